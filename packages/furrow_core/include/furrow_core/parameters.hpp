@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "furrow_core/error.hpp"
+
+namespace furrow {
+
+/// What is said of one parameter, once, where it is declared.
+struct ParameterInfo {
+  std::string name = {};  ///< snake_case, with its unit as a suffix where it has one
+  std::string unit = {};  ///< "m", "mm2", "m/s"; empty where there is none
+  std::string description = {};
+  double min = -std::numeric_limits<double>::infinity();  ///< numbers, and each entry of a list
+  double max = std::numeric_limits<double>::infinity();
+  std::vector<std::string> choices = {};  ///< strings: what is allowed; empty: anything
+};
+
+/// Reads or writes each parameter of a plain struct. A struct of parameters declares itself by one
+/// function, which gives its defaults, documentation, validation and loading:
+///
+///   struct TrackerParameters {
+///     double gate_m = 0.02;
+///     void visit(ParameterVisitor& v) {
+///       v.visit({.name = "gate_m", .unit = "m", .description = "...", .min = 0.0}, gate_m);
+///     }
+///   };
+class ParameterVisitor {
+ public:
+  virtual ~ParameterVisitor() = default;
+  virtual void visit(const ParameterInfo& info, bool& value) = 0;
+  virtual void visit(const ParameterInfo& info, std::int64_t& value) = 0;
+  virtual void visit(const ParameterInfo& info, double& value) = 0;
+  virtual void visit(const ParameterInfo& info, std::string& value) = 0;
+  virtual void visit(const ParameterInfo& info, std::vector<double>& value) = 0;
+  virtual void visit(const ParameterInfo& info, std::vector<std::string>& value) = 0;
+};
+
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
+                                    std::vector<std::string>>;
+
+/// "bool", "integer", "number", "string", "list of numbers", "list of strings".
+[[nodiscard]] std::string type_name(const ParameterValue& value);
+/// As it would stand in a parameter file.
+[[nodiscard]] std::string to_text(const ParameterValue& value);
+
+struct DeclaredParameter {
+  ParameterInfo info;
+  ParameterValue default_value;
+};
+
+/// A value as a file or the command line gives it, with where it stands.
+struct GivenParameter {
+  std::string name;
+  ParameterValue value;
+  SourceLocation where;
+};
+
+/// Lists what a struct declares, with the values that it holds now as defaults.
+class ParameterLister final : public ParameterVisitor {
+ public:
+  void visit(const ParameterInfo& info, bool& value) override;
+  void visit(const ParameterInfo& info, std::int64_t& value) override;
+  void visit(const ParameterInfo& info, double& value) override;
+  void visit(const ParameterInfo& info, std::string& value) override;
+  void visit(const ParameterInfo& info, std::vector<double>& value) override;
+  void visit(const ParameterInfo& info, std::vector<std::string>& value) override;
+
+  [[nodiscard]] const std::vector<DeclaredParameter>& declared() const { return declared_; }
+
+ private:
+  std::vector<DeclaredParameter> declared_;
+};
+
+/// Throws ConfigError when a name is not declared, given twice, of another type or out of range.
+/// An integer is accepted where a number is declared.
+void check_parameters(const std::vector<DeclaredParameter>& declared,
+                      const std::vector<GivenParameter>& given);
+
+/// Puts the given values into a struct; what is not given keeps its default. Throws as
+/// check_parameters does, before anything is assigned. Errors name "prefix.key".
+class ParameterLoader {
+ public:
+  template <class Parameters>
+  static void load(const std::vector<GivenParameter>& given, Parameters& parameters) {
+    ParameterLister lister;
+    parameters.visit(lister);
+    check_parameters(lister.declared(), given);
+    Assigner assigner(given);
+    parameters.visit(assigner);
+  }
+
+ private:
+  class Assigner final : public ParameterVisitor {
+   public:
+    explicit Assigner(const std::vector<GivenParameter>& given) : given_(given) {}
+    void visit(const ParameterInfo& info, bool& value) override;
+    void visit(const ParameterInfo& info, std::int64_t& value) override;
+    void visit(const ParameterInfo& info, double& value) override;
+    void visit(const ParameterInfo& info, std::string& value) override;
+    void visit(const ParameterInfo& info, std::vector<double>& value) override;
+    void visit(const ParameterInfo& info, std::vector<std::string>& value) override;
+
+   private:
+    const std::vector<GivenParameter>& given_;
+  };
+};
+
+/// What `Parameters` declares, with its defaults.
+template <class Parameters>
+[[nodiscard]] std::vector<DeclaredParameter> declared_parameters() {
+  Parameters parameters;
+  ParameterLister lister;
+  parameters.visit(lister);
+  return lister.declared();
+}
+
+}  // namespace furrow
