@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "furrow_ledger/ledger.hpp"
+#include "furrow_ledger/run_record.hpp"
+
+namespace furrow::ledger {
+
+/// The field from above as an SVG document: strips of the row one below the other, the direction of
+/// travel to the right, y (left of the robot) up; plants to scale coloured by outcome, routes by
+/// axis, sprays with their footprints to scale, misses with the initial of their cause.
+[[nodiscard]] std::string map_svg(const Ledger& ledger, const RunRecord& record);
+
+/// The run's report as one self-contained HTML document.
+[[nodiscard]] std::string report_html(const Ledger& ledger, const RunRecord& record);
+
+}  // namespace furrow::ledger
