@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_core/random.hpp"
+#include "furrow_core/time.hpp"
+#include "furrow_geometry/pose.hpp"
+
+namespace furrow::simulation {
+
+/// How the simulated robot truly drives. All noise 0: exactly along the row's line.
+struct RobotMotionParameters {
+  double speed_mps = 0.5;
+  /// Speed over time since the start, linear in between, held before and after; two points at one
+  /// time make a step. Empty: speed_mps throughout. Negative speeds drive backwards.
+  std::vector<double> profile_time_s;
+  std::vector<double> profile_speed_mps;
+  double speed_noise_mps = 0.0;  ///< standard deviation
+  double speed_correlation_s = 1.0;
+  double yaw_noise_radps = 0.0;  ///< standard deviation of the disturbing yaw rate
+  double yaw_correlation_s = 0.5;
+  double steering_distance_m = 1.0;
+  double slip = 0.0;
+  double start_x_m = 0.0;
+  double start_y_m = 0.0;
+  double start_heading_rad = 0.0;
+  void visit(ParameterVisitor& v);
+};
+
+/// Frames: F the field, B the robot's base. The base does not slide sideways.
+struct RobotState {
+  Time time;
+  geometry::Pose2 X_FB;
+  double speed_mps = 0.0;  ///< over ground, along B's x
+  double yaw_rate_radps = 0.0;
+  double acceleration_mps2 = 0.0;  ///< along B's x
+  double wheel_speed_mps = 0.0;    ///< what the wheels turn; more than speed_mps when they slip
+};
+
+/// The true motion of the base along the line y = 0. Speed and yaw rate are disturbed by
+/// Ornstein-Uhlenbeck noise; steering brings the base back to the line, critically damped over the
+/// steering distance L: curvature = -(y / L^2 + 2 sin(heading) / L). Integrated on a fixed grid of
+/// 1 ms from the start, so that the path does not depend on how the caller steps.
+class RobotMotion {
+ public:
+  /// Throws ConfigError for a profile whose lists differ in length or whose times descend, and
+  /// for values out of range.
+  RobotMotion(const RobotMotionParameters& parameters, std::uint64_t seed, Time start = Time());
+
+  [[nodiscard]] const RobotState& state() const { return state_; }
+  /// @pre dt >= 0.
+  const RobotState& step(Duration dt);
+  /// Does nothing when `time` is past already.
+  const RobotState& advance_to(Time time);
+
+ private:
+  [[nodiscard]] double commanded_speed_mps(double since_start_s) const;
+  void draw_inputs();
+  [[nodiscard]] RobotState moved(const RobotState& from, Duration dt) const;
+
+  RobotMotionParameters parameters_;
+  Random speed_random_;
+  Random yaw_random_;
+  Time start_;
+  double speed_noise_mps_ = 0.0;
+  double yaw_noise_radps_ = 0.0;
+  RobotState grid_;   ///< the last state on the grid
+  RobotState state_;  ///< what the caller has asked for
+};
+
+}  // namespace furrow::simulation
