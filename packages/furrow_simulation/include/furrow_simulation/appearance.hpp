@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_simulation/camera_effects.hpp"
+#include "furrow_simulation/ground.hpp"
+#include "furrow_simulation/light.hpp"
+#include "furrow_simulation/plant_mesh.hpp"
+
+namespace furrow::simulation {
+
+/// Everything that decides how a rendered field looks. Declared as one flat list of parameters.
+struct RendererParameters {
+  GroundParameters ground;
+  PlantParameters plants;
+  LightParameters light;
+  CameraEffectParameters camera;
+  std::int64_t threads = 1;  ///< changes the time, not the bytes
+
+  void visit(ParameterVisitor& v);
+};
+
+/// A random soil, light, condition of the plants, and camera, drawn widely, for training data.
+/// Resolution and threads keep their defaults.
+[[nodiscard]] RendererParameters random_appearance(std::uint64_t seed);
+
+}  // namespace furrow::simulation

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_simulation/light.hpp"
+
+namespace furrow::simulation {
+
+/// The soil surface. Covers are shares of the area.
+struct GroundParameters {
+  std::vector<double> soil_rgb = {0.56, 0.46, 0.37};
+  double moisture = 0.2;
+  double moisture_patchiness = 0.4;
+  double color_variation = 0.5;
+  double undulation_mm = 6.0;
+  double roughness_mm = 0.5;
+  double crumb_cover = 0.5;
+  double clod_cover = 0.10;
+  double clod_size_mm = 28.0;
+  double stone_cover = 0.008;
+  double straw_per_m2 = 6.0;
+  double crack_depth_mm = 0.0;
+  double ground_resolution_mm = 1.0;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// A point of the ground, lit.
+struct GroundTexel {
+  std::uint8_t bgr[3] = {0, 0, 0};
+  std::uint8_t shade = 255;  ///< brightness out of the sun, as a share (of 255) of `bgr`
+  std::int16_t height_64um = 0;
+  std::uint16_t unused = 0;  ///< keeps a texel to eight bytes
+};
+
+/// A square of the ground in F: `size` rows along +x, `size` texels along +y in each.
+struct GroundBlock {
+  static constexpr int kSize = 256;
+  static constexpr float kHeightUnit_m = 64e-6f;
+  std::vector<GroundTexel> texels;
+};
+
+/// A triangle of something that stands on the ground and casts a shadow; corners in F.
+struct ShadowTriangle {
+  Eigen::Vector3f corner[3];
+};
+
+/// Uneven soil with crumbs, clods, stones, straw and cracks, that never repeats: every block is a
+/// function of the seed and its place only.
+class Ground {
+ public:
+  /// Throws ConfigError for a colour that is not three finite numbers.
+  Ground(const GroundParameters& parameters, const Light& light, std::uint64_t seed);
+
+  [[nodiscard]] double texel_m() const { return texel_m_; }
+  /// The smooth part of the surface: undulation without clods. Plants stand on it.
+  [[nodiscard]] double base_height_m(double x_F_m, double y_F_m) const;
+  /// The block whose corner texel is (block_x * kSize, block_y * kSize), shaded by `casters`.
+  void make_block(std::int32_t block_x, std::int32_t block_y,
+                  const std::vector<ShadowTriangle>& casters, GroundBlock& block) const;
+  /// How far a caster's top may stand from a block and still shade it.
+  [[nodiscard]] double shadow_reach_m() const { return shadow_reach_m_; }
+
+ private:
+  struct Region;
+  void stamp_objects(Region& region) const;
+  void add_noise(Region& region) const;
+  void add_cracks(Region& region) const;
+  void cast_shadows(Region& region, const std::vector<ShadowTriangle>& casters) const;
+  void shade(const Region& region, GroundBlock& block) const;
+
+  GroundParameters parameters_;
+  Light light_;
+  std::uint64_t seed_;
+  double texel_m_;
+  double shadow_reach_m_;
+  std::vector<float> fine_tile_;
+  std::vector<float> coarse_tile_;
+  Eigen::Vector3f soil_linear_;
+};
+
+}  // namespace furrow::simulation

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "furrow_core/parameters.hpp"
+
+namespace furrow::simulation {
+
+/// Daylight: a sun and an even sky.
+struct LightParameters {
+  double sun_elevation_rad = 0.9;
+  double sun_azimuth_rad = 0.8;
+  double diffuse_share = 0.35;
+  double exposure = 1.0;
+  double warmth = 0.1;
+  double contrast = 1.0;
+  double saturation = 1.0;
+  bool robot_shadow = false;
+  double robot_shadow_edge_m = -0.2;
+  double robot_shadow_angle_rad = 0.0;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// What shading needs of the parameters. Colours in linear RGB.
+class Light {
+ public:
+  /// Throws ConfigError when a value is not finite.
+  explicit Light(const LightParameters& parameters);
+
+  [[nodiscard]] const Eigen::Vector3f& to_sun_F() const { return to_sun_F_; }
+  [[nodiscard]] const Eigen::Vector3f& sun_rgb() const { return sun_rgb_; }
+  [[nodiscard]] const Eigen::Vector3f& sky_rgb() const { return sky_rgb_; }
+
+  /// The camera's response: linear RGB radiance to gamma-encoded BGR in [0, 255], with exposure
+  /// already in the light, then contrast and saturation. (sRGB-like power curve of 1/2.2.)
+  [[nodiscard]] Eigen::Vector3f encode_bgr(const Eigen::Vector3f& linear_rgb) const;
+
+ private:
+  Eigen::Vector3f to_sun_F_;
+  Eigen::Vector3f sun_rgb_;
+  Eigen::Vector3f sky_rgb_;
+  float contrast_;
+  float saturation_;
+};
+
+}  // namespace furrow::simulation
