@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace furrow::geometry {
+
+/// Brings an angle into (-pi, pi].
+[[nodiscard]] double wrap_angle_rad(double angle_rad);
+
+/// A planar pose X_AB: where frame B stands in frame A. On the ground, x points along the row,
+/// y to the left, and the heading is counted counter-clockwise from A's x to B's x.
+struct Pose2 {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_rad = 0.0;
+};
+
+/// X_AC from X_AB and X_BC.
+[[nodiscard]] Pose2 compose(const Pose2& X_AB, const Pose2& X_BC);
+/// X_BA from X_AB.
+[[nodiscard]] Pose2 inverse(const Pose2& X_AB);
+/// p_A from p_B.
+[[nodiscard]] Eigen::Vector2d transform(const Pose2& X_AB, const Eigen::Vector2d& p_B);
+/// The spatial pose of a frame that moves on the ground plane: z = 0, no roll, no pitch.
+[[nodiscard]] Eigen::Isometry3d to_isometry(const Pose2& X_AB);
+/// The planar part of a spatial pose; roll, pitch and height are dropped.
+[[nodiscard]] Pose2 to_planar(const Eigen::Isometry3d& X_AB);
+/// Linear in position, the shorter way in heading. `fraction` 0 gives `a`, 1 gives `b`; values
+/// outside extrapolate.
+[[nodiscard]] Pose2 interpolate(const Pose2& a, const Pose2& b, double fraction);
+
+}  // namespace furrow::geometry
