@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "furrow_core/result.hpp"
+#include "furrow_core/time.hpp"
+#include "furrow_geometry/pose.hpp"
+#include "furrow_localization/measurement.hpp"
+
+namespace furrow::localization {
+
+/// Where the base frame B stands in the field frame F at an instant, and how it moves.
+struct PoseEstimate {
+  Time stamp = {};
+  geometry::Pose2 X_FB = {};
+  /// Of (x_m, y_m, heading_rad), in F.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double speed_mps = 0.0;  ///< along B's x
+  double yaw_rate_radps = 0.0;
+  /// Of (speed_mps, yaw_rate_radps).
+  Eigen::Matrix2d twist_covariance = Eigen::Matrix2d::Zero();
+};
+
+/// Counts of one sensor's measurements by what became of them.
+struct SensorCounts {
+  std::int64_t used = 0;  ///< in order, late and recovered ones together
+  std::int64_t late = 0;
+  std::int64_t gated = 0;
+  std::int64_t recovered = 0;
+  std::int64_t no_fix = 0;
+  std::int64_t too_old = 0;
+  std::int64_t invalid = 0;
+  std::int64_t ignored = 0;
+};
+
+enum class HealthLevel : std::uint8_t { kOk, kDegraded, kLost };
+
+/// The estimator's health as data. Ages are seconds since the newest measurement used, infinite
+/// where there was none.
+struct LocalizationHealth {
+  HealthLevel level = HealthLevel::kLost;
+  double odometry_age_s = 0.0;
+  double imu_age_s = 0.0;
+  double gnss_age_s = 0.0;
+  FixQuality fix_quality = FixQuality::kNone;  ///< of the newest GNSS measurement used
+  double position_sigma_m = 0.0;               ///< along the worst direction
+  double heading_sigma_rad = 0.0;
+  SensorCounts odometry;
+  SensorCounts imu;
+  SensorCounts gnss;
+};
+
+/// A running estimate of the robot's pose. Measurements may come late and out of order; time comes
+/// with them. Not thread-safe.
+class PoseEstimator {
+ public:
+  virtual ~PoseEstimator() = default;
+
+  /// Starts anew at a known pose; forgets all measurements, keeps the counts. `covariance` is of
+  /// (x_m, y_m, heading_rad). kInvalidArgument: not finite, or the covariance not positive
+  /// semi-definite.
+  [[nodiscard]] virtual Status reset(Time stamp, const geometry::Pose2& X_FB,
+                                     const Eigen::Matrix3d& covariance) = 0;
+
+  virtual Outcome add(const WheelOdometry& measurement) = 0;
+  virtual Outcome add(const ImuYawRate& measurement) = 0;
+  virtual Outcome add(const GnssPosition& measurement) = 0;
+
+  /// The pose at `stamp`, from what is known now: within the history, or up to the extrapolation
+  /// limit beyond the newest measurement. kUnavailable: nothing measured yet. kStale: outside
+  /// those bounds.
+  [[nodiscard]] virtual Result<PoseEstimate> predict(Time stamp) const = 0;
+
+  [[nodiscard]] virtual LocalizationHealth health(Time now) const = 0;
+};
+
+}  // namespace furrow::localization

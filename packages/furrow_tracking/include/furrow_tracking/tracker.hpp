@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_tracking/observation.hpp"
+#include "furrow_tracking/track.hpp"
+
+namespace furrow::tracking {
+
+struct TrackerParameters {
+  std::string association = "dynamic_radius";
+  double min_radius_m = 0.010;
+  double max_radius_m = 0.050;
+  double displacement_gain = 1.0;
+  double uncertainty_gain = 2.0;
+  double size_weight = 0.2;
+  double fixed_radius_m = 0.030;
+  double min_iou = 0.1;
+
+  double birth_score = 0.5;
+  double match_score = 0.3;
+  std::int64_t confirm_matches = 3;
+  std::int64_t tentative_misses = 2;
+  std::int64_t confirmed_misses = 5;
+  double visible_margin_m = 0.03;
+  double keep_distance_m = 10.0;
+  std::int64_t max_tracks = 8192;
+  std::int64_t max_observations = 4096;
+  double duplicate_ratio = 0.5;
+
+  double position_floor_m = 0.0005;
+  double drift_m_per_sqrt_s = 0.0005;
+  double truncated_sigma_ratio = 0.5;
+  double outlier_sigma = 3.0;
+  double class_floor = 0.1;
+  double class_evidence_weight = 1.0;
+  double class_max_log_odds = 8.0;
+  double size_memory_views = 10.0;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// Why a view was not used at all.
+enum class ViewFault : std::uint8_t {
+  kNone,
+  kTimeNotNewer,   ///< its stamp is not after that of the newest view used
+  kBadPose,        ///< not finite
+  kBadCovariance,  ///< not finite, not symmetric, or with a negative variance
+};
+
+/// What one update did, as data. Counts are of this update alone.
+struct UpdateSummary {
+  ViewFault fault = ViewFault::kNone;
+  std::int32_t observations = 0;
+  std::int32_t matched = 0;
+  std::int32_t born = 0;
+  std::int32_t confirmed = 0;
+  std::int32_t missed = 0;      ///< tracks not matched where they should have been seen
+  std::int32_t dropped = 0;     ///< ended for misses
+  std::int32_t passed = 0;      ///< ended behind the robot
+  std::int32_t merged = 0;      ///< ended as duplicates of another track
+  std::int32_t evicted = 0;     ///< ended because the tracker was full
+  std::int32_t rejected = 0;    ///< observations with a value that is not valid
+  std::int32_t overflow = 0;    ///< observations beyond max_observations, not looked at
+  std::int32_t weak = 0;        ///< below match_score, or unmatched and below birth_score
+  std::int32_t duplicates = 0;  ///< second observations of a plant already matched
+  bool empty_view = false;      ///< no valid observation
+
+  [[nodiscard]] bool ok() const { return fault == ViewFault::kNone && rejected + overflow == 0; }
+};
+
+/// Follows plants as static landmarks of the field frame. Each update associates the observations
+/// of one view to the tracks (by distance over a dynamic radius, Halstead et al. 2021, or one of
+/// two baselines, with optimal linear assignment), refines positions by a Kalman filter and class
+/// by Bayes' rule. The result does not depend on the order of the observations. Errors of the pose
+/// are taken as independent from view to view; `position_floor_m` bounds what averaging may claim.
+///
+/// Cost: about linear in the plants in view; buffers are reused. Not thread-safe.
+class Tracker {
+ public:
+  /// Throws ConfigError when a parameter is out of its range or contradicts another.
+  explicit Tracker(TrackerParameters parameters = {});
+  ~Tracker();
+  Tracker(Tracker&&) noexcept;
+  Tracker& operator=(Tracker&&) noexcept;
+
+  /// A view with a fault changes nothing. Observations that are not valid are counted and ignored.
+  UpdateSummary update(const View& view, std::span<const Observation> observations);
+
+  /// Ends every track (kFinished); they are then found in ended().
+  void finish();
+
+  /// Living tracks (not kEnded), in the order of id. Valid until the next update().
+  [[nodiscard]] std::span<const Track> tracks() const;
+  /// Tracks that ended in the last update() or finish(), in the order of id.
+  [[nodiscard]] std::span<const Track> ended() const;
+  /// For each observation of the last update: the id of its track, 0 where it has none.
+  [[nodiscard]] std::span<const std::uint64_t> observation_track_ids() const;
+
+  [[nodiscard]] const TrackerParameters& parameters() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace furrow::tracking
