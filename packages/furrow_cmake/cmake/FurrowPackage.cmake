@@ -45,8 +45,10 @@ macro(furrow_package)
 endmacro()
 
 function(furrow_warnings target)
+  # Designated initializers leave members at their defaults on purpose.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-                         -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+                         -Wno-sign-conversion -Wno-missing-field-initializers -Wnon-virtual-dtor
+                         -Woverloaded-virtual -Werror)
 endfunction()
 
 # A library with its public headers under include/, installed and exported.

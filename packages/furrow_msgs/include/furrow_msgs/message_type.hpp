@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "furrow_core/result.hpp"
+
+namespace furrow::msgs {
+
+/// What the middleware needs to know of a message type, without naming the C++ class. One object
+/// per type, alive as long as the program: compare by address.
+struct MessageType {
+  std::string_view dds_name;  ///< "sensor_msgs::msg::dds_::Image_"
+  std::string_view ros_name;  ///< "sensor_msgs/msg/Image"
+  std::string_view idl;       ///< the type and all it is made of, as OMG IDL
+
+  std::shared_ptr<void> (*create)();
+  /// Bytes of the CDR form, with its encapsulation header of four bytes.
+  std::size_t (*serialized_size)(const void* message);
+  /// Writes the CDR form (XCDR1, little endian) and returns its size; kOutOfRange when `buffer` is
+  /// smaller than that.
+  Result<std::size_t> (*serialize)(const void* message, std::span<std::byte> buffer);
+  /// Reads a CDR form of either endianness; kParse when it is cut short or malformed, and then the
+  /// message's content is unspecified.
+  Status (*deserialize)(std::span<const std::byte> buffer, void* message);
+};
+
+/// The MessageType of a generated class; specialized in message_types.hpp.
+template <class Message>
+[[nodiscard]] const MessageType& message_type();
+
+}  // namespace furrow::msgs

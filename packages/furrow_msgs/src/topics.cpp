@@ -1,0 +1,185 @@
+#include "furrow_msgs/topics.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace furrow::msgs {
+namespace {
+
+enum Row : std::size_t {
+  kClock,
+  kCameraImage,
+  kCameraDepth,
+  kCameraInfo,
+  kWheelOdometry,
+  kImu,
+  kGnssFix,
+  kRobotOdometry,
+  kTransforms,
+  kStaticTransforms,
+  kRobotDescription,
+  kInstances,
+  kTracks,
+  kPlan,
+  kAxisState,
+  kAxisEvent,
+  kJointStates,
+  kEmergencyStop,
+  kTrueOdometry,
+  kTrueField,
+  kTrueInstances,
+  kTrueSpray,
+  kRunStatus,
+  kRunRecord,
+  kDiagnostics,
+  kRows
+};
+
+const std::array<Topic, kRows>& table() {
+  static const std::array<Topic, kRows> rows = {{
+      {"clock", &message_type<topics::Clock::Message>(), sensor_qos(10), 0, "",
+       "Simulated time, as ROS 2 nodes with use_sim_time read it."},
+      {"camera/image", &message_type<topics::CameraImage::Message>(), sensor_qos(), 5,
+       "camera_optical", "Colour image, bgr8."},
+      {"camera/depth", &message_type<topics::CameraDepth::Message>(), sensor_qos(), 5,
+       "camera_optical", "Depth registered to the colour image, 32FC1, in m; 0 where unknown."},
+      {"camera/camera_info", &message_type<topics::CameraInfo::Message>(), sensor_qos(), 5,
+       "camera_optical", "Intrinsics of the camera, in px."},
+      {"wheel/odometry", &message_type<topics::WheelOdometry::Message>(), sensor_qos(50), 50,
+       "odom", "Speed and yaw rate from the wheels, dead-reckoned pose; m, m/s, rad/s."},
+      {"imu/data", &message_type<topics::Imu::Message>(), sensor_qos(100), 100, "base_link",
+       "Angular rates and accelerations; rad/s, m/s2."},
+      {"gnss/fix", &message_type<topics::GnssFix::Message>(), sensor_qos(10), 5, "gnss_antenna",
+       "RTK position of the antenna; degrees, m, covariance in m2."},
+      {"localization/odometry", &message_type<topics::RobotOdometry::Message>(), sensor_qos(50), 50,
+       "field", "Pose X_FB of the base in the field frame, twist in the base frame."},
+      {"tf", &message_type<topics::Transforms::Message>(), sensor_qos(50), 50, "field",
+       "Transforms that move: field to base_link."},
+      {"tf_static", &message_type<topics::StaticTransforms::Message>(), latched_qos(), 0,
+       "base_link", "Transforms that stand: base_link to the cameras' optical frames."},
+      {"robot_description", &message_type<topics::RobotDescription::Message>(), latched_qos(), 0,
+       "", "The URDF."},
+      {"perception/instances", &message_type<topics::Instances::Message>(), sensor_qos(5), 5,
+       "camera_optical", "The plants of one image: class, mask, box, stem (px and m), area (mm2)."},
+      {"tracker/tracks", &message_type<topics::Tracks::Message>(), sensor_qos(5), 5, "field",
+       "Every plant that is held in view or memory, refined over views; m, mm2."},
+      {"planner/plan", &message_type<topics::Plan::Message>(), sensor_qos(5), 5, "field",
+       "A route per axis and a decision for every track."},
+      {"axis/state", &message_type<topics::AxisState::Message>(), sensor_qos(50), 50, "",
+       "Position, velocity and state of one axis; m, m/s."},
+      {"axis/event", &message_type<topics::AxisEvent::Message>(), event_qos(), 0, "field",
+       "A spray that was made, or a stop that was skipped and why."},
+      {"joint_states", &message_type<topics::JointStates::Message>(), sensor_qos(50), 50, "",
+       "The axes as ROS 2 shows them; m, m/s."},
+      {"emergency_stop", &message_type<topics::EmergencyStop::Message>(), latched_qos(), 0, "",
+       "Valves shut and axes stopped while active."},
+      {"truth/odometry", &message_type<topics::TrueOdometry::Message>(), sensor_qos(50), 50,
+       "field", "Simulation only: the true pose of the base."},
+      {"truth/field", &message_type<topics::TrueField::Message>(), latched_qos(), 0, "field",
+       "Simulation only: the plants that are there; m, mm2."},
+      {"truth/instances", &message_type<topics::TrueInstances::Message>(), sensor_qos(5), 5,
+       "camera_optical", "Simulation only: what a perfect detector would tell."},
+      {"truth/spray", &message_type<topics::TrueSpray::Message>(), event_qos(), 0, "field",
+       "Simulation only: where a spray landed; m."},
+      {"run/status", &message_type<topics::RunStatus::Message>(), sensor_qos(10), 5, "",
+       "How far the run is; the last one says finished."},
+      {"run/record", &message_type<topics::RunRecord::Message>(), latched_qos(), 0, "field",
+       "What the ledger is made of, once at the end."},
+      {"diagnostics", &message_type<topics::Diagnostics::Message>(), sensor_qos(50), 1, "",
+       "Health of the components: level, message, counters."},
+  }};
+  return rows;
+}
+
+}  // namespace
+
+namespace topics {
+
+const Topic& Clock::topic() {
+  return table()[kClock];
+}
+const Topic& CameraImage::topic() {
+  return table()[kCameraImage];
+}
+const Topic& CameraDepth::topic() {
+  return table()[kCameraDepth];
+}
+const Topic& CameraInfo::topic() {
+  return table()[kCameraInfo];
+}
+const Topic& WheelOdometry::topic() {
+  return table()[kWheelOdometry];
+}
+const Topic& Imu::topic() {
+  return table()[kImu];
+}
+const Topic& GnssFix::topic() {
+  return table()[kGnssFix];
+}
+const Topic& RobotOdometry::topic() {
+  return table()[kRobotOdometry];
+}
+const Topic& Transforms::topic() {
+  return table()[kTransforms];
+}
+const Topic& StaticTransforms::topic() {
+  return table()[kStaticTransforms];
+}
+const Topic& RobotDescription::topic() {
+  return table()[kRobotDescription];
+}
+const Topic& Instances::topic() {
+  return table()[kInstances];
+}
+const Topic& Tracks::topic() {
+  return table()[kTracks];
+}
+const Topic& Plan::topic() {
+  return table()[kPlan];
+}
+const Topic& AxisState::topic() {
+  return table()[kAxisState];
+}
+const Topic& AxisEvent::topic() {
+  return table()[kAxisEvent];
+}
+const Topic& JointStates::topic() {
+  return table()[kJointStates];
+}
+const Topic& EmergencyStop::topic() {
+  return table()[kEmergencyStop];
+}
+const Topic& TrueOdometry::topic() {
+  return table()[kTrueOdometry];
+}
+const Topic& TrueField::topic() {
+  return table()[kTrueField];
+}
+const Topic& TrueInstances::topic() {
+  return table()[kTrueInstances];
+}
+const Topic& TrueSpray::topic() {
+  return table()[kTrueSpray];
+}
+const Topic& RunStatus::topic() {
+  return table()[kRunStatus];
+}
+const Topic& RunRecord::topic() {
+  return table()[kRunRecord];
+}
+const Topic& Diagnostics::topic() {
+  return table()[kDiagnostics];
+}
+
+}  // namespace topics
+
+std::span<const Topic> all_topics() {
+  return table();
+}
+
+const Topic* find_topic(std::string_view name) {
+  const auto it = std::ranges::find(table(), name, &Topic::name);
+  return it == table().end() ? nullptr : &*it;
+}
+
+}  // namespace furrow::msgs
