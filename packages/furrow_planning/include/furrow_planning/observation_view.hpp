@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "furrow_core/result.hpp"
+#include "furrow_planning/parameters.hpp"
+#include "furrow_planning/types.hpp"
+
+namespace furrow::planning {
+
+/// What finally became of a target. Each target that was ever given is reported once, also when
+/// it was never planned.
+struct TargetOutcome {
+  TargetId id = 0;
+  Decision decision = Decision::kUnreachable;
+  std::int32_t axis = -1;
+  Eigen::Vector2d aim_F = Eigen::Vector2d::Zero();  ///< kTreat only
+};
+
+/// Plans over a stream of observations (Ahmadi et al. 2024, obsModel). Axes are taken to rest at
+/// their last stop until the next one's departure; a stop that is due to depart within commit_s is
+/// committed: no later plan changes it. The rolling view keeps its plan and plans again only when
+/// a target, a crop or an axis has changed; the segment view plans each stretch of row once, when
+/// all of it has been seen, as if it were alone. Not thread-safe.
+class ObservationView {
+ public:
+  virtual ~ObservationView() = default;
+
+  /// Adds a target, or moves and reweighs the one of the same id. Error: not finite, or a negative
+  /// weight; the target is then reported as kInvalid. A target that is committed or finished keeps
+  /// its outcome.
+  virtual Status update(const Target& target) = 0;
+  /// Forgets a target that proved to be none. False when it is unknown, committed or finished.
+  virtual bool remove(TargetId id) = 0;
+  virtual Status update_protected(const ProtectedPlant& plant) = 0;
+  virtual bool remove_protected(TargetId id) = 0;
+
+  /// Takes an axis out of service or puts it back. Uncommitted and unfinished stops of a failed
+  /// axis go to the others with the next replan. Out-of-range axis: an error.
+  virtual Status set_in_service(std::size_t axis, bool in_service) = 0;
+  /// Where an axis really rests, when it is not at its last stop.
+  virtual Status set_axis_position(std::size_t axis, double position_m) = 0;
+
+  /// Moves the robot. All plants with x < `seen_until_x_m` are taken as seen. Error: not finite,
+  /// speed <= 0 with the measured speed in use, or backwards (the state is then kept).
+  virtual Status advance(const RobotState& robot, double seen_until_x_m) = 0;
+  /// Brings the plan up to date. Returns whether it was planned anew.
+  [[nodiscard]] virtual Result<bool> replan() = 0;
+  /// Routes from the robot's present position on, committed stops first. Its decisions cover the
+  /// targets that are not finished.
+  [[nodiscard]] virtual const Plan& plan() const = 0;
+
+  /// Appends what has been finished since the last call: sprays passed, targets passed by.
+  virtual void take_outcomes(std::vector<TargetOutcome>& outcomes) = 0;
+  /// Way of each axis along the stops that it has passed.
+  [[nodiscard]] virtual const std::vector<double>& travel_m() const = 0;
+};
+
+/// By `parameters.view`: "rolling" or "segment". Throws ConfigError as make_route_planner does, and
+/// when an axis is not sound.
+[[nodiscard]] std::unique_ptr<ObservationView> make_observation_view(
+    const PlannerParameters& parameters, std::vector<AxisSpec> axes);
+
+}  // namespace furrow::planning

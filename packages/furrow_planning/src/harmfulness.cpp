@@ -1,0 +1,155 @@
+#include "furrow_planning/harmfulness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace furrow::planning {
+
+Result<double> harmfulness(double weed_area_mm2, double beta, double crop_area_mm2,
+                           double distance_m) {
+  const double kappa = weed_area_mm2 * beta / (crop_area_mm2 * distance_m);
+  if (!(weed_area_mm2 >= 0.0) || !(beta >= 0.0) || !(crop_area_mm2 > 0.0) || !(distance_m > 0.0) ||
+      !std::isfinite(kappa)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "harmfulness needs finite areas and distance, of the crop above zero"};
+  }
+  return kappa;
+}
+
+void HarmfulnessParameters::visit(ParameterVisitor& v) {
+  v.visit({.name = "scheme",
+           .description = "worth of a weed: all alike, by the class of its species, or kappa",
+           .choices = {"uniform", "class", "kappa"}},
+          scheme);
+  v.visit({.name = "crops",
+           .description = "kappa counts the nearest crop, or the sum over all crops in range",
+           .choices = {"nearest", "all"}},
+          crops);
+  v.visit({.name = "crop_range_m",
+           .unit = "m",
+           .description = "crops farther from the weed do not count",
+           .min = 0.01,
+           .max = 10.0},
+          crop_range_m);
+  v.visit({.name = "min_distance_m",
+           .unit = "m",
+           .description = "smaller distances between weed and crop count as this",
+           .min = 1e-4,
+           .max = 1.0},
+          min_distance_m);
+  v.visit({.name = "no_crop_distance_m",
+           .unit = "m",
+           .description = "distance that stands for a crop where none is in range",
+           .min = 1e-4,
+           .max = 100.0},
+          no_crop_distance_m);
+  v.visit({.name = "no_crop_area_mm2",
+           .unit = "mm2",
+           .description = "area of a crop that is not there or has no area of its own",
+           .min = 1.0,
+           .max = 1e7},
+          no_crop_area_mm2);
+  v.visit({.name = "left_standing_below",
+           .description = "weeds of less worth are left standing",
+           .min = 0.0},
+          left_standing_below);
+  v.visit({.name = "unknown_species",
+           .description = "a species that is not in the table: treat with the highest beta and "
+                          "class weight, with the lowest, or leave standing",
+           .choices = {"high", "low", "leave"}},
+          unknown_species);
+  v.visit({.name = "species", .description = "names of the species table"}, species);
+  v.visit({.name = "beta", .description = "factor of each species in kappa", .min = 0.0}, beta);
+  v.visit({.name = "class_weight",
+           .description = "worth of each species under the scheme class",
+           .min = 0.0},
+          class_weight);
+}
+
+HarmfulnessModel::HarmfulnessModel(HarmfulnessParameters parameters)
+    : parameters_(std::move(parameters)) {
+  const auto& names = parameters_.species;
+  if (names.empty() || names.size() != parameters_.beta.size() ||
+      names.size() != parameters_.class_weight.size()) {
+    throw ConfigError("species, beta and class_weight are not equally long lists with an entry");
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw ConfigError("species '" + names[i] + "' is named twice");
+    }
+    if (!(parameters_.beta[i] >= 0.0) || !(parameters_.class_weight[i] >= 0.0)) {
+      throw ConfigError("beta and class_weight of '" + names[i] + "' must not be negative");
+    }
+  }
+}
+
+Result<Harmfulness> HarmfulnessModel::weigh(const WeedPhenotype& weed,
+                                            std::span<const CropPhenotype> crops) const {
+  const auto sound = [](const Eigen::Vector2d& p, double area) {
+    return p.allFinite() && std::isfinite(area) && area >= 0.0;
+  };
+  if (!sound(weed.p_F, weed.area_mm2) ||
+      !std::all_of(crops.begin(), crops.end(),
+                   [&](const CropPhenotype& crop) { return sound(crop.p_F, crop.area_mm2); })) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "a plant's position or area is not finite, or its area is negative"};
+  }
+  const auto& names = parameters_.species;
+  const auto found = std::find(names.begin(), names.end(), weed.species);
+  Harmfulness result;
+  double beta = 0.0;
+  double class_weight = 0.0;
+  if (found != names.end()) {
+    const auto i = static_cast<std::size_t>(found - names.begin());
+    beta = parameters_.beta[i];
+    class_weight = parameters_.class_weight[i];
+  } else {
+    const bool high = parameters_.unknown_species == "high";
+    const auto pick = [high](const std::vector<double>& values) {
+      return high ? *std::max_element(values.begin(), values.end())
+                  : *std::min_element(values.begin(), values.end());
+    };
+    beta = pick(parameters_.beta);
+    class_weight = pick(parameters_.class_weight);
+    result.leave = parameters_.unknown_species == "leave";
+  }
+  if (parameters_.scheme == "uniform") {
+    result.weight = 1.0;
+  } else if (parameters_.scheme == "class") {
+    result.weight = class_weight;
+  } else {
+    result.weight = kappa(weed, beta, crops);
+  }
+  result.leave = result.leave || result.weight < parameters_.left_standing_below;
+  return result;
+}
+
+double HarmfulnessModel::kappa(const WeedPhenotype& weed, double beta,
+                               std::span<const CropPhenotype> crops) const {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double of_nearest = 0.0;
+  double of_all = 0.0;
+  for (const CropPhenotype& crop : crops) {
+    const double distance_m = (crop.p_F - weed.p_F).norm();
+    if (distance_m > parameters_.crop_range_m) {
+      continue;
+    }
+    const double area_mm2 = crop.area_mm2 > 0.0 ? crop.area_mm2 : parameters_.no_crop_area_mm2;
+    const double value =
+        weed.area_mm2 * beta / (area_mm2 * std::max(distance_m, parameters_.min_distance_m));
+    of_all += value;
+    if (distance_m < nearest_m) {
+      nearest_m = distance_m;
+      of_nearest = value;
+    }
+  }
+  if (!std::isfinite(nearest_m)) {
+    return weed.area_mm2 * beta / (parameters_.no_crop_area_mm2 * parameters_.no_crop_distance_m);
+  }
+  return parameters_.crops == "all" ? of_all : of_nearest;
+}
+
+}  // namespace furrow::planning
