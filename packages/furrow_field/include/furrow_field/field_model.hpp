@@ -1,9 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "furrow_core/result.hpp"
 
 namespace furrow::field {
 
@@ -32,5 +37,22 @@ struct FieldModel {
   std::vector<double> row_y_m;  ///< crop rows, along x
   std::vector<Plant> plants;    ///< in the order of x, then id
 };
+
+/// More than a day's work of any robot; files and generators refuse to go beyond.
+inline constexpr std::size_t kMaxPlants = 1'000'000;
+inline constexpr double kMaxFieldLength_m = 10'000.0;
+inline constexpr double kMaxFieldWidth_m = 1'000.0;
+
+/// "crop", "weed".
+[[nodiscard]] std::string_view to_string(PlantKind kind);
+/// Nothing for any other text.
+[[nodiscard]] std::optional<PlantKind> plant_kind_from(std::string_view text);
+
+/// Checks what FieldModel promises: finite figures, plants inside the field, unique ids, the order,
+/// texts without control characters, the bounds above. The Error names the plant.
+[[nodiscard]] Status validate(const FieldModel& field);
+
+/// Brings plants into the order that FieldModel promises.
+void sort_plants(FieldModel& field);
 
 }  // namespace furrow::field
