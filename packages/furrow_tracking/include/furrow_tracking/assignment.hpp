@@ -41,6 +41,7 @@ class SparseAssignment {
                    double unmatched_cost);
   void augment(std::int32_t start_row);
 
+  double unmatched_cost_ = 0.0;
   std::vector<std::int32_t> first_edge_;  // of each row, and one past the last
   std::vector<Edge> edges_;
   std::vector<double> row_price_;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -66,6 +67,8 @@ class TrackingEvaluation {
   std::vector<Frame> frames_;
   std::vector<std::int64_t> truth_ids_;
   std::vector<std::int64_t> track_ids_;
+  std::map<std::int64_t, std::int32_t> truth_index_;
+  std::map<std::int64_t, std::int32_t> track_index_;
 };
 
 /// Normalized absolute error of counts over several stretches of field:

@@ -47,6 +47,7 @@ struct Track {
   /// Sum of the views' species probabilities; empty while no view named a species.
   std::vector<float> species_votes = {};
   std::int32_t views = 0;         ///< matches, the first view included
+  std::int32_t whole_views = 0;   ///< of these, those not cut by the image's border
   std::int32_t misses = 0;        ///< in a row, counted only where it should have been seen
   std::int32_t misses_total = 0;  ///< over its life, counted likewise
   Time first_seen = {};
