@@ -10,7 +10,7 @@ namespace furrow::actuation {
 /// States by what they mean at the machine.
 enum class AxisState {
   kDisabled,       ///< no power at the motor; the axis can be moved by hand
-  kHoming,         ///< powered, looking for its reference; no positions are taken
+  kHoming,         ///< powered, without its reference or looking for it; takes no positions
   kReady,          ///< powered, homed, standing at its target
   kMoving,         ///< powered, homed, on its way
   kFault,          ///< stopped by itself; stays until reset
@@ -66,7 +66,8 @@ class AxisDriver {
   [[nodiscard]] virtual Status write(Time now, Duration period, const AxisCommand& command) = 0;
   [[nodiscard]] virtual const AxisReading& reading() const = 0;
 
-  /// Power on; from kDisabled. An axis that is homed goes to kReady, else it waits for home().
+  /// Power on; from kDisabled. An axis that is homed goes to kReady, else to kHoming,
+  /// where it waits for home().
   [[nodiscard]] virtual Status enable(Time now) = 0;
   /// Power off after a stop; from every state.
   [[nodiscard]] virtual Status disable(Time now) = 0;

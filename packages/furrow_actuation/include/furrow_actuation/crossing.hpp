@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_core/result.hpp"
@@ -58,7 +59,7 @@ struct Crossing {
 
 struct CrossingParameters {
   double min_speed_mps = 0.03;
-  double horizon_s = 60.0;
+  double horizon_s = 20.0;
 
   void visit(ParameterVisitor& v);
 };
@@ -73,5 +74,10 @@ struct CrossingParameters {
                                                 const DropletModel& droplet,
                                                 const Eigen::Vector2d& p_F, double q_velocity_mps,
                                                 const CrossingParameters& parameters);
+
+/// The same without an Error, for loops that must not allocate. @pre all numbers are finite.
+[[nodiscard]] std::optional<Crossing> find_crossing(
+    const BaseState& base, const geometry::AxisModel& axis, const DropletModel& droplet,
+    const Eigen::Vector2d& p_F, double q_velocity_mps, const CrossingParameters& parameters);
 
 }  // namespace furrow::actuation

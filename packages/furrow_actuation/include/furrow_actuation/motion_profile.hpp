@@ -42,7 +42,7 @@ class MotionProfile {
   [[nodiscard]] Range position_range() const;
   [[nodiscard]] double peak_speed_mps() const;
 
-  static constexpr std::size_t kMaxSegments = 12;
+  static constexpr std::size_t kMaxSegments = 16;
   struct Segment {
     double start_s = 0.0;
     MotionState start;
