@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_core/time.hpp"
+#include "furrow_graph/health.hpp"
+#include "furrow_graph/transport.hpp"
+#include "furrow_msgs/topics.hpp"
+
+namespace furrow::graph {
+
+/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context.
+template <class T>
+class Output {
+ public:
+  using Message = typename T::Message;
+
+  /// Hands the message to every input of this process without a copy, and to the wire when
+  /// somebody outside reads it. From then on nobody may change it. Call it from the component's
+  /// callbacks or constructor only.
+  void publish(std::shared_ptr<const Message> message) const { send_(std::move(message)); }
+  void publish(Message message) const {
+    publish(std::make_shared<const Message>(std::move(message)));
+  }
+
+ private:
+  friend class Context;
+  explicit Output(std::function<void(MessagePtr)> send) : send_(std::move(send)) {}
+  std::function<void(MessagePtr)> send_;
+};
+
+/// What a component is given at construction and keeps by reference. Not thread-safe: for the
+/// component's own constructor and callbacks.
+class Context {
+ public:
+  virtual ~Context() = default;
+
+  /// The component's name in the graph.
+  [[nodiscard]] virtual const std::string& name() const = 0;
+  /// The time of the graph's clock: of the current step in lock-step, else Unix time.
+  [[nodiscard]] virtual Time now() const = 0;
+  /// The seed of the run; draw streams by the component's name.
+  [[nodiscard]] virtual std::uint64_t seed() const = 0;
+
+  /// The component's parameters, checked and loaded over the defaults.
+  template <class Parameters>
+  [[nodiscard]] Parameters parameters() const {
+    Parameters parameters;
+    ParameterLoader::load(given_parameters(), parameters);
+    return parameters;
+  }
+
+  /// Calls back for each message, in the order of arrival over all inputs of the component.
+  template <class T>
+  void input(std::function<void(const std::shared_ptr<const typename T::Message>&)> callback) {
+    bind_input(T::topic(), [callback = std::move(callback)](const MessagePtr& message) {
+      callback(std::static_pointer_cast<const typename T::Message>(message));
+    });
+  }
+  template <class T>
+  [[nodiscard]] Output<T> output() {
+    return Output<T>(bind_output(T::topic()));
+  }
+  /// Calls back every `period`, first one period after the start, at whole multiples of it. A
+  /// callback that comes too late is left out, and counted.
+  virtual void every(Duration period, std::function<void(Time)> callback) = 0;
+
+  /// Sets the level that diagnostics show; kOk with an empty message clears it.
+  virtual void health(HealthLevel level, std::string_view message) = 0;
+  /// Adds to a counter that diagnostics show.
+  virtual void count(std::string_view counter, std::int64_t by = 1) = 0;
+  /// Ends the run in good order, after the current callbacks. The reason is told to the user.
+  virtual void request_stop(std::string_view reason) = 0;
+
+ protected:
+  [[nodiscard]] virtual const std::vector<GivenParameter>& given_parameters() const = 0;
+  virtual void bind_input(const msgs::Topic& topic,
+                          std::function<void(const MessagePtr&)> callback) = 0;
+  [[nodiscard]] virtual std::function<void(MessagePtr)> bind_output(const msgs::Topic& topic) = 0;
+};
+
+}  // namespace furrow::graph

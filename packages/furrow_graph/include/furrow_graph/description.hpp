@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_msgs/topics.hpp"
+
+namespace furrow::graph {
+
+enum class Need : std::uint8_t { kRequired, kOptional };
+
+struct PortInfo {
+  const msgs::Topic* topic = nullptr;  ///< its name is the port's name, which a graph may remap
+  Need need = Need::kRequired;         ///< inputs: whether somebody must publish it
+};
+
+/// What a component class says of itself, without being constructed: enough to check a whole graph
+/// and to generate its documentation.
+class Description {
+ public:
+  Description& doc(std::string_view text) {
+    text_ = text;
+    return *this;
+  }
+  template <class Parameters>
+  Description& parameters() {
+    parameters_ = declared_parameters<Parameters>();
+    return *this;
+  }
+  template <class T>
+  Description& input(Need need = Need::kRequired) {
+    inputs_.push_back({&T::topic(), need});
+    return *this;
+  }
+  template <class T>
+  Description& output() {
+    outputs_.push_back({&T::topic(), Need::kOptional});
+    return *this;
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::vector<DeclaredParameter>& declared_parameters_list() const {
+    return parameters_;
+  }
+  [[nodiscard]] const std::vector<PortInfo>& inputs() const { return inputs_; }
+  [[nodiscard]] const std::vector<PortInfo>& outputs() const { return outputs_; }
+
+ private:
+  std::string text_;
+  std::vector<DeclaredParameter> parameters_;
+  std::vector<PortInfo> inputs_;
+  std::vector<PortInfo> outputs_;
+};
+
+}  // namespace furrow::graph

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+
+namespace furrow::graph {
+
+/// One component of a graph, as its file names it.
+struct ComponentSpec {
+  std::string name;
+  std::string group;  ///< the name in the file; differs from `name` where for_each made several
+  std::string class_name;
+  std::string library;             ///< empty: found by the class's name
+  std::string for_each;            ///< the list to expand over; empty: none
+  std::string for_each_parameter;  ///< takes the list's entry
+  std::vector<GivenParameter> parameters;
+  std::map<std::string, std::string> remaps;  ///< port -> topic
+  SourceLocation where;
+};
+
+/// The components and their wiring, named once; where they run is said by a deployment.
+///
+///   graph: weeding
+///   common: {tool_file: ../urdf/bonnbot.urdf}   # for every component that declares the parameter
+///   external: [emergency_stop]                   # topics that come from outside the graph
+///   components:
+///     tracker:
+///       class: tracker
+///       parameters_file: ../components/tracker.yaml
+///       parameters: {confirm_views: 2}           # over those of the file
+///       remap: {perception/instances: truth/instances}
+///     axis:
+///       class: axis_driver
+///       for_each: axes          # one component "axis_NAME" for each NAME of the list
+///       parameter: axis         # which parameter takes NAME
+struct GraphSpec {
+  std::string name;
+  SourceLocation where;
+  std::vector<GivenParameter> common;
+  std::vector<std::string> external;
+  std::vector<ComponentSpec> components;  ///< in the order of the file
+};
+
+/// Reads a graph file; `for_each` entries stay as they are until expand_lists(). Throws ConfigError
+/// with file, line and key.
+[[nodiscard]] GraphSpec load_graph(const std::filesystem::path& path);
+
+/// The value of a common parameter, or empty.
+[[nodiscard]] std::string common_text(const GraphSpec& graph, std::string_view name);
+
+/// Replaces each `for_each` entry by one component per name of its list.
+void expand_lists(GraphSpec& graph, const std::map<std::string, std::vector<std::string>>& lists);
+
+/// Puts "COMPONENT.KEY=VALUE" over what the file says; "common.KEY=VALUE" for the common ones.
+/// Throws ConfigError when no component has that name.
+void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings);
+
+/// Which component lives in which process on which host.
+///
+///   deployment: composed
+///   processes:
+///     furrow: "*"
+///     vision: {host: camera_pc, components: [camera, perception]}
+///   wire: {domain_id: 7}        # parameters of the transport
+struct ProcessSpec {
+  std::string name;
+  std::string host;
+  std::vector<std::string> components;  ///< names or groups; "*" alone: all
+  SourceLocation where;
+};
+
+struct DeploymentSpec {
+  std::string name;
+  SourceLocation where;
+  std::vector<ProcessSpec> processes;
+  std::vector<GivenParameter> wire;
+};
+
+[[nodiscard]] DeploymentSpec load_deployment(const std::filesystem::path& path);
+
+/// The components of each process, by process name. Throws ConfigError when a component is in no
+/// process or in two, or a process names one that the graph does not have.
+[[nodiscard]] std::map<std::string, std::vector<std::string>> place_components(
+    const GraphSpec& graph, const DeploymentSpec& deployment);
+
+}  // namespace furrow::graph

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "furrow_core/time.hpp"
+#include "furrow_msgs/message_type.hpp"
+#include "furrow_msgs/qos.hpp"
+
+namespace furrow::graph {
+
+using MessagePtr = std::shared_ptr<const void>;
+
+/// What goes over the wire of one endpoint since it was made.
+struct WireCounters {
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t dropped = 0;  ///< left out by us: queue full, malformed, or the wire refused it
+};
+
+/// Sends one topic to other processes.
+class WireWriter {
+ public:
+  virtual ~WireWriter() = default;
+  /// True while a reader outside this process is matched. Cheap: asked at every publication.
+  [[nodiscard]] virtual bool has_readers() const = 0;
+  /// Hands the message over; serialized and sent by another thread, from a bounded queue whose
+  /// oldest entry is dropped when full. Never blocks. Messages stay alive until they are sent.
+  virtual void write(MessagePtr message) = 0;
+  [[nodiscard]] virtual WireCounters counters() const = 0;
+};
+
+/// Receives one topic from other processes; what this process publishes itself is left out.
+class WireReader {
+ public:
+  virtual ~WireReader() = default;
+  [[nodiscard]] virtual WireCounters counters() const = 0;
+  /// Writers outside this process that are matched now.
+  [[nodiscard]] virtual int writers() const = 0;
+};
+
+/// The middleware as the graph sees it. Topics are named without the wire's prefix.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  /// Errors (a refused QoS, no memory) throw ConfigError: endpoints are made at construction only.
+  [[nodiscard]] virtual std::unique_ptr<WireWriter> make_writer(const std::string& topic,
+                                                                const msgs::MessageType& type,
+                                                                const msgs::Qos& qos) = 0;
+  /// `on_message` is called on the transport's thread and must only enqueue.
+  [[nodiscard]] virtual std::unique_ptr<WireReader> make_reader(
+      const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
+      std::function<void(MessagePtr)> on_message) = 0;
+};
+
+}  // namespace furrow::graph

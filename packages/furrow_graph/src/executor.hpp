@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "furrow_graph/runtime.hpp"
+#include "node.hpp"
+
+namespace furrow::graph {
+
+/// Calls the nodes of a process until it is stopped.
+class Executor : public NodeHost {
+ public:
+  /// Before run(): messages published by constructors wait for it.
+  virtual RunResult run(std::span<const std::unique_ptr<Node>> nodes) = 0;
+  /// A message from outside the process, on any thread.
+  virtual void deliver_from_wire(const Route::Reader& reader, MessagePtr message) = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Executor> make_lockstep_executor(int threads);
+[[nodiscard]] std::unique_ptr<Executor> make_realtime_executor(int threads);
+
+/// Hands a message to the wire when somebody outside reads it. A latched topic is always written,
+/// for those who come later.
+void write_to_wire(Route& route, const MessagePtr& message);
+
+/// Reason and failure of the first stop that was asked for. Thread-safe.
+class StopRequest {
+ public:
+  void set(std::string_view reason, bool failed);
+  [[nodiscard]] bool requested() const { return requested_; }
+  [[nodiscard]] RunResult result(Time end) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::atomic<bool> requested_ = false;
+  std::string reason_;
+  bool failed_ = false;
+};
+
+}  // namespace furrow::graph

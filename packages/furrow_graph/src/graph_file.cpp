@@ -1,0 +1,158 @@
+#include "furrow_graph/graph_file.hpp"
+
+#include <algorithm>
+
+#include "furrow_graph/parameter_file.hpp"
+#include "yaml_source.hpp"
+
+namespace furrow::graph {
+namespace {
+
+void put_over(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
+  const auto it = std::ranges::find(parameters, parameter.name, &GivenParameter::name);
+  if (it == parameters.end()) {
+    parameters.push_back(std::move(parameter));
+  } else {
+    *it = std::move(parameter);
+  }
+}
+
+void check_name(const YamlSource& source, const YAML::Node& node, const std::string& name) {
+  const bool plain =
+      !name.empty() &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+  if (!plain || name == "common") {
+    throw ConfigError(source.where(node), name,
+                      "is not a component's name (lower-case letters, digits and _; not 'common')");
+  }
+}
+
+std::map<std::string, std::string> read_remaps(const YamlSource& source, const YAML::Node& map) {
+  std::map<std::string, std::string> remaps;
+  source.each(map, "remap",
+              [&](const std::string& key, const YAML::Node&, const YAML::Node& value) {
+                remaps[key] = source.text(value, key);
+              });
+  return remaps;
+}
+
+ComponentSpec read_component(const YamlSource& source, const std::string& name,
+                             const YAML::Node& name_node, const YAML::Node& map) {
+  ComponentSpec spec;
+  spec.name = name;
+  spec.group = name;
+  spec.where = source.where(name_node);
+  std::vector<GivenParameter> over;
+  source.each(
+      map, name, [&](const std::string& key, const YAML::Node& node, const YAML::Node& value) {
+        if (key == "class") {
+          spec.class_name = source.text(value, key);
+        } else if (key == "library") {
+          spec.library = (source.folder() / source.text(value, key)).lexically_normal().string();
+        } else if (key == "parameters_file") {
+          spec.parameters = read_parameter_file(source.folder() / source.text(value, key));
+        } else if (key == "parameters") {
+          over = source.parameters(value, key);
+        } else if (key == "remap") {
+          spec.remaps = read_remaps(source, value);
+        } else if (key == "for_each") {
+          spec.for_each = source.text(value, key);
+        } else if (key == "parameter") {
+          spec.for_each_parameter = source.text(value, key);
+        } else {
+          throw ConfigError(
+              source.where(node), name + "." + key,
+              "unknown key; known: class, library, parameters_file, parameters, remap, "
+              "for_each, parameter");
+        }
+      });
+  if (spec.class_name.empty()) throw ConfigError(spec.where, name + ".class", "is missing");
+  if (spec.for_each.empty() != spec.for_each_parameter.empty()) {
+    throw ConfigError(spec.where, name, "for_each and parameter go together");
+  }
+  for (GivenParameter& parameter : over) put_over(spec.parameters, std::move(parameter));
+  return spec;
+}
+
+}  // namespace
+
+GraphSpec load_graph(const std::filesystem::path& path) {
+  const YamlSource source(path);
+  GraphSpec graph;
+  graph.where = {path.string(), 1};
+  graph.name = path.stem().string();
+  source.each(
+      source.root(), "",
+      [&](const std::string& key, const YAML::Node& node, const YAML::Node& value) {
+        if (key == "graph") {
+          graph.name = source.text(value, key);
+        } else if (key == "common") {
+          graph.common = source.parameters(value, key);
+        } else if (key == "external") {
+          graph.external = source.texts(value, key);
+        } else if (key == "components") {
+          source.each(
+              value, key,
+              [&](const std::string& name, const YAML::Node& name_node, const YAML::Node& map) {
+                check_name(source, name_node, name);
+                graph.components.push_back(read_component(source, name, name_node, map));
+              });
+        } else {
+          throw ConfigError(source.where(node), key,
+                            "unknown key; known: graph, common, external, components");
+        }
+      });
+  if (graph.components.empty()) throw ConfigError(graph.where, "components", "is missing or empty");
+  return graph;
+}
+
+std::string common_text(const GraphSpec& graph, std::string_view name) {
+  const auto it = std::ranges::find(graph.common, name, &GivenParameter::name);
+  return it == graph.common.end() ? "" : to_text(it->value);
+}
+
+void expand_lists(GraphSpec& graph, const std::map<std::string, std::vector<std::string>>& lists) {
+  std::vector<ComponentSpec> expanded;
+  for (ComponentSpec& spec : graph.components) {
+    if (spec.for_each.empty()) {
+      expanded.push_back(std::move(spec));
+      continue;
+    }
+    const auto list = lists.find(spec.for_each);
+    if (list == lists.end()) {
+      throw ConfigError(spec.where, spec.name + ".for_each",
+                        "there is no list '" + spec.for_each + "'");
+    }
+    for (const std::string& entry : list->second) {
+      ComponentSpec& copy = expanded.emplace_back(spec);
+      copy.name = spec.name + "_" + entry;
+      copy.for_each.clear();
+      put_over(copy.parameters, {spec.for_each_parameter, entry, spec.where});
+    }
+  }
+  graph.components = std::move(expanded);
+}
+
+void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings) {
+    const SourceLocation where{"--set " + setting, 0};
+    const auto equals = setting.find('=');
+    const auto dot = setting.find('.');
+    if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
+      throw ConfigError(where, "", "is not COMPONENT.KEY=VALUE");
+    }
+    const std::string component = setting.substr(0, dot);
+    const GivenParameter parameter{setting.substr(dot + 1, equals - dot - 1),
+                                   parse_parameter_value(setting.substr(equals + 1)), where};
+    bool found = component == "common";
+    if (found) put_over(graph.common, parameter);
+    for (ComponentSpec& spec : graph.components) {
+      if (spec.name != component && spec.group != component) continue;
+      put_over(spec.parameters, parameter);
+      found = true;
+    }
+    if (!found) throw ConfigError(where, component, "there is no such component in the graph");
+  }
+}
+
+}  // namespace furrow::graph

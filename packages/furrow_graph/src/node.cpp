@@ -1,0 +1,147 @@
+#include "node.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+#include "furrow_graph/graph_check.hpp"
+
+namespace furrow::graph {
+
+Node::Node(ComponentSpec spec, const ComponentClass& type, std::vector<GivenParameter> parameters,
+           std::uint64_t seed, NodeHost& host)
+    : spec_(std::move(spec)),
+      type_(type),
+      parameters_(std::move(parameters)),
+      seed_(seed),
+      host_(host) {}
+
+Node::~Node() = default;
+
+void Node::construct(std::function<Route&(const std::string& topic)> route_of) {
+  route_of_ = std::move(route_of);
+  try {
+    component_ = type_.make(*this);
+  } catch (const ConfigError& error) {
+    throw ConfigError(spec_.where, spec_.name, error.what());
+  }
+}
+
+std::optional<std::size_t> Node::input_of(const std::string& topic) const {
+  const auto it = std::ranges::find(inputs_, topic, &Input::topic);
+  if (it == inputs_.end()) return std::nullopt;
+  return static_cast<std::size_t>(it - inputs_.begin());
+}
+
+void Node::push(std::size_t input, MessagePtr message) {
+  const std::lock_guard lock(mutex_);
+  Input& target = inputs_[input];
+  ++target.received;
+  if (target.waiting == target.depth) {
+    const auto oldest = std::ranges::find(mail_, input, &Item::input);
+    mail_.erase(oldest);
+    --target.waiting;
+    ++target.dropped;
+  }
+  mail_.push_back({input, std::move(message)});
+  ++target.waiting;
+}
+
+bool Node::has_messages() const {
+  const std::lock_guard lock(mutex_);
+  return !mail_.empty();
+}
+
+std::size_t Node::run_messages() {
+  std::size_t budget = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    budget = mail_.size();
+  }
+  std::size_t handled = 0;
+  for (; handled < budget; ++handled) {
+    Item item;
+    {
+      const std::lock_guard lock(mutex_);
+      if (mail_.empty()) break;
+      item = std::move(mail_.front());
+      mail_.pop_front();
+      --inputs_[item.input].waiting;
+    }
+    call([&] { inputs_[item.input].callback(item.message); });
+  }
+  return handled;
+}
+
+void Node::run_timer(std::size_t timer, Time due) {
+  call([&] { timers_[timer].callback(due); });
+}
+
+void Node::call(const std::function<void()>& callback) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    callback();
+  } catch (const std::exception& failure) {
+    host_.request_stop("component '" + spec_.name + "' failed: " + failure.what(), true);
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const std::lock_guard lock(mutex_);
+  ++callbacks_;
+  busy_s_ += took.count();
+  longest_call_s_ = std::max(longest_call_s_, took.count());
+}
+
+ComponentStatus Node::status() const {
+  const std::lock_guard lock(mutex_);
+  ComponentStatus status;
+  status.name = spec_.name;
+  status.class_name = spec_.class_name;
+  status.health = health_;
+  for (const Input& input : inputs_) {
+    status.inputs.push_back({input.topic, input.received, input.dropped});
+  }
+  status.callbacks = callbacks_;
+  status.missed_timers = missed_timers_;
+  status.busy_s = busy_s_;
+  status.longest_call_s = longest_call_s_;
+  return status;
+}
+
+void Node::every(Duration period, std::function<void(Time)> callback) {
+  if (period <= Duration()) throw ConfigError("a timer's period must be positive");
+  timers_.push_back({period, Time(), std::move(callback)});
+}
+
+void Node::health(HealthLevel level, std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  health_.level = level;
+  health_.message = message;
+}
+
+void Node::count(std::string_view counter, std::int64_t by) {
+  const std::lock_guard lock(mutex_);
+  health_.counters[std::string(counter)] += by;
+}
+
+void Node::require_declared(const std::vector<PortInfo>& ports, const msgs::Topic& topic) const {
+  const bool declared = std::ranges::any_of(
+      ports, [&](const PortInfo& port) { return port.topic->name == topic.name; });
+  if (!declared) {
+    throw ConfigError("class '" + type_.name + "' does not describe its port '" +
+                      std::string(topic.name) + "'");
+  }
+}
+
+void Node::bind_input(const msgs::Topic& topic, std::function<void(const MessagePtr&)> callback) {
+  require_declared(type_.description.inputs(), topic);
+  inputs_.push_back({resolved_topic(spec_, topic), static_cast<std::size_t>(topic.qos.depth),
+                     std::move(callback)});
+}
+
+std::function<void(MessagePtr)> Node::bind_output(const msgs::Topic& topic) {
+  require_declared(type_.description.outputs(), topic);
+  Route& route = route_of_(resolved_topic(spec_, topic));
+  return [this, &route](MessagePtr message) { host_.publish(*this, route, std::move(message)); };
+}
+
+}  // namespace furrow::graph

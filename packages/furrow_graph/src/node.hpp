@@ -1,0 +1,131 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "furrow_graph/context.hpp"
+#include "furrow_graph/registry.hpp"
+#include "furrow_graph/runtime.hpp"
+
+namespace furrow::graph {
+
+class Node;
+
+/// Where a node's messages go: the inputs of this process, and the wire.
+struct Route {
+  std::string topic;
+  msgs::Qos qos;
+  struct Reader {
+    Node* node;
+    std::size_t input;
+  };
+  std::vector<Reader> readers;
+  std::unique_ptr<WireWriter> wire;
+};
+
+/// What the executor offers to its nodes.
+class NodeHost {
+ public:
+  virtual ~NodeHost() = default;
+  [[nodiscard]] virtual Time now() const = 0;
+  /// Called by a node, on the thread of its callback.
+  virtual void publish(Node& from, Route& route, MessagePtr message) = 0;
+  virtual void request_stop(std::string_view reason, bool failed) = 0;
+};
+
+/// A component of this process with its mailboxes and timers: the Context that the component sees.
+/// push() may be called from any thread; run_*() by one thread at a time.
+class Node final : public Context {
+ public:
+  struct Timer {
+    Duration period;
+    Time next;
+    std::function<void(Time)> callback;
+  };
+
+  Node(ComponentSpec spec, const ComponentClass& type, std::vector<GivenParameter> parameters,
+       std::uint64_t seed, NodeHost& host);
+  ~Node() override;
+
+  /// Makes the component. The routes must stay alive until the node is gone.
+  void construct(std::function<Route&(const std::string& topic)> route_of);
+  void destroy_component() { component_.reset(); }
+
+  [[nodiscard]] const ComponentSpec& spec() const { return spec_; }
+  [[nodiscard]] const ComponentClass& type() const { return type_; }
+  /// The index of the input that reads `topic`, if the component bound it.
+  [[nodiscard]] std::optional<std::size_t> input_of(const std::string& topic) const;
+
+  void push(std::size_t input, MessagePtr message);
+  [[nodiscard]] bool has_messages() const;
+  /// Takes out and handles the messages that are there now, oldest first; returns how many.
+  std::size_t run_messages();
+
+  [[nodiscard]] std::vector<Timer>& timers() { return timers_; }
+  void run_timer(std::size_t timer, Time due);
+  void count_missed_timer() { ++missed_timers_; }
+
+  [[nodiscard]] ComponentStatus status() const;
+
+  // Context
+  [[nodiscard]] const std::string& name() const override { return spec_.name; }
+  [[nodiscard]] Time now() const override { return host_.now(); }
+  [[nodiscard]] std::uint64_t seed() const override { return seed_; }
+  void every(Duration period, std::function<void(Time)> callback) override;
+  void health(HealthLevel level, std::string_view message) override;
+  void count(std::string_view counter, std::int64_t by) override;
+  void request_stop(std::string_view reason) override { host_.request_stop(reason, false); }
+
+ protected:
+  [[nodiscard]] const std::vector<GivenParameter>& given_parameters() const override {
+    return parameters_;
+  }
+  void bind_input(const msgs::Topic& topic,
+                  std::function<void(const MessagePtr&)> callback) override;
+  [[nodiscard]] std::function<void(MessagePtr)> bind_output(const msgs::Topic& topic) override;
+
+ private:
+  struct Item {
+    std::size_t input;
+    MessagePtr message;
+  };
+  struct Input {
+    std::string topic;
+    std::size_t depth;
+    std::function<void(const MessagePtr&)> callback;
+    std::size_t waiting = 0;
+    std::uint64_t received = 0;
+    std::uint64_t dropped = 0;
+  };
+
+  /// Calls the component and keeps account of the time; what it throws stops the run.
+  void call(const std::function<void()>& callback);
+  void require_declared(const std::vector<PortInfo>& ports, const msgs::Topic& topic) const;
+
+  ComponentSpec spec_;
+  const ComponentClass& type_;
+  std::vector<GivenParameter> parameters_;
+  std::uint64_t seed_;
+  NodeHost& host_;
+  std::function<Route&(const std::string&)> route_of_;
+  std::unique_ptr<Component> component_;
+  std::vector<Timer> timers_;
+
+  mutable std::mutex mutex_;  // of what follows
+  std::vector<Input> inputs_;
+  std::deque<Item> mail_;  // in the order of arrival over all inputs
+  Health health_;
+  std::uint64_t callbacks_ = 0;
+  double busy_s_ = 0.0;
+  double longest_call_s_ = 0.0;
+  std::atomic<std::uint64_t> missed_timers_ = 0;
+};
+
+}  // namespace furrow::graph

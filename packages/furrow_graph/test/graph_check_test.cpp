@@ -1,0 +1,106 @@
+#include "furrow_graph/graph_check.hpp"
+
+#include "fixtures.hpp"
+
+namespace furrow::graph {
+namespace {
+
+using test::spec;
+
+std::string error(const GraphSpec& graph) {
+  Registry registry = test::standard_registry();
+  return test::error_of("", [&] { check_graph(graph, registry); });
+}
+
+TEST(GraphCheck, WiringIsListedByTopic) {
+  Registry registry = test::standard_registry();
+  GraphSpec graph;
+  graph.components = {spec("s", "source"), spec("r", "relay")};
+  const auto connections = check_graph(graph, registry);
+  ASSERT_EQ(connections.size(), 2u);
+  EXPECT_EQ(connections[1].topic, "tracker/tracks");
+  EXPECT_EQ(connections[1].publishers, std::vector<std::string>{"s"});
+  EXPECT_EQ(connections[1].readers, std::vector<std::string>{"r"});
+}
+
+TEST(GraphCheck, UnknownClass) {
+  GraphSpec graph;
+  graph.components = {spec("s", "sauce")};
+  EXPECT_EQ(error(graph),
+            "graph.yaml:1: class: unknown component class 'sauce'; looked for "
+            "libfurrow_component_sauce.so in: (no folder)");
+}
+
+TEST(GraphCheck, UnconnectedInput) {
+  GraphSpec graph;
+  graph.components = {spec("r", "relay")};
+  EXPECT_EQ(error(graph),
+            "graph.yaml:1: r: input 'tracker/tracks' is not connected: nobody publishes "
+            "'tracker/tracks'");
+  graph.external = {"tracker/tracks"};
+  EXPECT_EQ(error(graph), "");
+}
+
+TEST(GraphCheck, TypeMismatch) {
+  GraphSpec graph;
+  graph.components = {spec("s", "source"), spec("r", "relay")};
+  graph.components[1].remaps = {{"planner/plan", "tracker/tracks"}};
+  EXPECT_EQ(error(graph),
+            "graph.yaml:1: r: topic 'tracker/tracks' carries furrow_msgs/msg/Tracks, but port "
+            "'planner/plan' has type furrow_msgs/msg/Plan");
+}
+
+TEST(GraphCheck, RemapOfNoPort) {
+  GraphSpec graph;
+  graph.components = {spec("s", "source")};
+  graph.components[0].remaps = {{"a", "b"}};
+  EXPECT_EQ(error(graph), "graph.yaml:1: s.remap.a: class 'source' has no such port");
+}
+
+TEST(GraphCheck, Parameters) {
+  GraphSpec graph;
+  graph.components = {spec("s", "source")};
+  graph.components[0].parameters = {{"rate_h", 3.0, {"graph.yaml", 7}}};
+  EXPECT_EQ(error(graph),
+            "graph.yaml:7: rate_h: unknown parameter; did you mean 'rate_hz'? (component 's', "
+            "class 'source')");
+  graph.components[0].parameters = {{"rate_hz", 3e6, {"graph.yaml", 7}}};
+  EXPECT_EQ(error(graph),
+            "graph.yaml:7: rate_hz: 3000000 is out of range [0.1, 1000] Hz (component 's', class "
+            "'source')");
+}
+
+TEST(GraphCheck, CommonParametersGoToThoseThatDeclareThem) {
+  GraphSpec graph;
+  graph.components = {spec("s", "source"), spec("r", "relay")};
+  graph.common = {{"rate_hz", 3.0, {}}};
+  EXPECT_EQ(error(graph), "");
+  graph.common = {{"rate_kz", 3.0, {"graph.yaml", 2}}};
+  EXPECT_EQ(error(graph), "graph.yaml:2: common.rate_kz: no component declares this parameter");
+}
+
+TEST(GraphCheck, QosMismatch) {
+  // A reader of a latched topic wired to one that is not latched would wait in vain.
+  Registry registry = test::standard_registry();
+  ComponentClass reader{.name = "reader"};
+  reader.description.input<msgs::topics::RobotDescription>();
+  reader.make = [](Context&) { return std::make_unique<Component>(); };
+  registry.add(std::move(reader));
+  ComponentClass writer{.name = "writer"};
+  static const msgs::Topic plain{
+      "text", &msgs::message_type<std_msgs::msg::String>(), msgs::sensor_qos(), 0, "", ""};
+  struct Text {
+    static const msgs::Topic& topic() { return plain; }
+  };
+  writer.description.output<Text>();
+  writer.make = [](Context&) { return std::make_unique<Component>(); };
+  registry.add(std::move(writer));
+  GraphSpec graph;
+  graph.components = {spec("w", "writer"), spec("r", "reader")};
+  graph.components[1].remaps = {{"robot_description", "text"}};
+  EXPECT_EQ(test::error_of("", [&] { check_graph(graph, registry); }),
+            "graph.yaml:1: r: topic 'text': the QoS asked for is more than the publisher offers");
+}
+
+}  // namespace
+}  // namespace furrow::graph

@@ -1,0 +1,111 @@
+#include "furrow_graph/graph_file.hpp"
+
+#include "fixtures.hpp"
+
+namespace furrow::graph {
+namespace {
+
+using test::error_of;
+using test::scratch_folder;
+using test::write;
+
+constexpr char kGraph[] = R"(graph: example
+common: {rate_hz: 5, tool_file: tool.urdf}
+components:
+  source: {class: source, parameters_file: source.yaml, parameters: {label: b}}
+  axis:
+    class: relay
+    for_each: axes
+    parameter: axis
+    remap: {tracker/tracks: truth/tracks}
+)";
+
+class GraphFile : public testing::Test {
+ protected:
+  GraphSpec load(const std::string& text) { return load_graph(write(folder_ / "g.yaml", text)); }
+  std::string error(const std::string& text) {
+    return error_of(folder_, [&] { (void)load(text); });
+  }
+  std::filesystem::path folder_ = scratch_folder();
+};
+
+TEST_F(GraphFile, Loads) {
+  write(folder_ / "source.yaml", "label: a\nrate_hz: 3\n");
+  GraphSpec graph = load(kGraph);
+  EXPECT_EQ(graph.name, "example");
+  EXPECT_EQ(common_text(graph, "tool_file"), (folder_ / "tool.urdf").string());
+  ASSERT_EQ(graph.components.size(), 2u);
+  ASSERT_EQ(graph.components[0].parameters.size(), 2u);
+  EXPECT_EQ(graph.components[0].parameters[0].value, ParameterValue(std::string("b")));
+
+  expand_lists(graph, {{"axes", {"one", "two"}}});
+  ASSERT_EQ(graph.components.size(), 3u);
+  EXPECT_EQ(graph.components[2].name, "axis_two");
+  EXPECT_EQ(graph.components[2].group, "axis");
+  EXPECT_EQ(graph.components[2].parameters[0].value, ParameterValue(std::string("two")));
+  EXPECT_EQ(graph.components[2].remaps.at("tracker/tracks"), "truth/tracks");
+}
+
+TEST_F(GraphFile, ErrorsSayFileLineAndKey) {
+  EXPECT_EQ(error("graph: g\n"), "g.yaml:1: components: is missing or empty");
+  EXPECT_EQ(error("graph: g\ncomponent: {}\n"),
+            "g.yaml:2: component: unknown key; known: graph, common, external, components");
+  EXPECT_EQ(error("components:\n  a: {clas: b}\n"),
+            "g.yaml:2: a.clas: unknown key; known: class, library, parameters_file, parameters, "
+            "remap, for_each, parameter");
+  EXPECT_EQ(error("components:\n  a: {remap: {}}\n"), "g.yaml:2: a.class: is missing");
+  EXPECT_EQ(error("components:\n  A: {class: b}\n"),
+            "g.yaml:2: A: is not a component's name (lower-case letters, digits and _; not "
+            "'common')");
+  EXPECT_EQ(error("components:\n  a: {class: b, for_each: axes}\n"),
+            "g.yaml:2: a: for_each and parameter go together");
+  EXPECT_EQ(error("components:\n  a: {class: b, parameters: 3}\n"),
+            "g.yaml:2: parameters: is not a map of keys");
+}
+
+TEST_F(GraphFile, UnknownListIsAnError) {
+  GraphSpec graph = load("components:\n  a: {class: b, for_each: wheels, parameter: w}\n");
+  EXPECT_EQ(error_of(folder_, [&] { expand_lists(graph, {}); }),
+            "g.yaml:2: a.for_each: there is no list 'wheels'");
+}
+
+TEST_F(GraphFile, SettingsGoOverTheFile) {
+  GraphSpec graph = load(
+      "components:\n  a: {class: b, parameters: {x: 1}}\n"
+      "  axis: {class: c, for_each: axes, parameter: axis}\n");
+  expand_lists(graph, {{"axes", {"one", "two"}}});
+  apply_settings(graph, {"a.x=2", "axis.y=true", "axis_two.y=false", "common.seed=4"});
+  EXPECT_EQ(graph.components[0].parameters[0].value, ParameterValue(std::int64_t{2}));
+  EXPECT_EQ(graph.components[1].parameters[1].value, ParameterValue(true));
+  EXPECT_EQ(graph.components[2].parameters[1].value, ParameterValue(false));
+  EXPECT_EQ(common_text(graph, "seed"), "4");
+  EXPECT_EQ(error_of(folder_, [&] { apply_settings(graph, {"nobody.x=1"}); }),
+            "--set nobody.x=1: nobody: there is no such component in the graph");
+  EXPECT_EQ(error_of(folder_, [&] { apply_settings(graph, {"a"}); }),
+            "--set a: is not COMPONENT.KEY=VALUE");
+}
+
+TEST_F(GraphFile, DeploymentPlacesEveryComponentOnce) {
+  const GraphSpec graph = load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
+  const auto place = [&](const std::string& text) {
+    return place_components(graph, load_deployment(write(folder_ / "d.yaml", text)));
+  };
+  EXPECT_EQ(place("processes: {all: \"*\"}\n").at("all").size(), 3u);
+  const auto two = place("processes:\n  one: [a, c]\n  two: {host: h, components: [b]}\n");
+  EXPECT_EQ(two.at("one"), (std::vector<std::string>{"a", "c"}));
+
+  const auto error = [&](const std::string& text) {
+    return error_of(folder_, [&] { (void)place(text); });
+  };
+  EXPECT_EQ(error("processes: {one: [a, b]}\n"),
+            "d.yaml:1: processes: component 'c' is in no process");
+  EXPECT_EQ(error("processes:\n  one: [a, b, c]\n  two: [a]\n"),
+            "d.yaml:3: two: component 'a' is already in process 'one'");
+  EXPECT_EQ(error("processes:\n  one: [z]\n"), "d.yaml:2: one: the graph has no component 'z'");
+  EXPECT_EQ(error("deployment: d\n"), "d.yaml:1: processes: is missing or empty");
+  EXPECT_EQ(error("process: d\n"),
+            "d.yaml:1: process: unknown key; known: deployment, processes, wire");
+}
+
+}  // namespace
+}  // namespace furrow::graph

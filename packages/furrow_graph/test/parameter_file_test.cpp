@@ -1,0 +1,69 @@
+#include "furrow_graph/parameter_file.hpp"
+
+#include "fixtures.hpp"
+
+namespace furrow::graph {
+namespace {
+
+using test::error_of;
+using test::scratch_folder;
+using test::write;
+
+struct Parameters {
+  double rate_hz = 1.0;
+  std::string tool_file;
+  std::vector<std::string> names;
+  void visit(ParameterVisitor& v) {
+    v.visit({.name = "rate_hz"}, rate_hz);
+    v.visit({.name = "tool_file"}, tool_file);
+    v.visit({.name = "names"}, names);
+  }
+};
+
+TEST(ParameterFile, ValuesHaveTheirTypes) {
+  EXPECT_EQ(parse_parameter_value("true"), ParameterValue(true));
+  EXPECT_EQ(parse_parameter_value("-3"), ParameterValue(std::int64_t{-3}));
+  EXPECT_EQ(parse_parameter_value("1e-3"), ParameterValue(1e-3));
+  EXPECT_EQ(parse_parameter_value("\"3\""), ParameterValue(std::string("3")));
+  EXPECT_EQ(parse_parameter_value("photos:DIR"), ParameterValue(std::string("photos:DIR")));
+  EXPECT_EQ(parse_parameter_value("[1, 2.5]"), ParameterValue(std::vector<double>{1, 2.5}));
+  EXPECT_EQ(parse_parameter_value("[a, 2]"), ParameterValue(std::vector<std::string>{"a", "2"}));
+  EXPECT_EQ(parse_parameter_value("a: [b"), ParameterValue(std::string("a: [b")));
+}
+
+TEST(ParameterFile, PathsAreTakenFromTheFilesFolder) {
+  const auto folder = scratch_folder();
+  const auto path = write(folder / "a" / "p.yaml", "tool_file: ../b/x.urdf\nrate_hz: 4\n");
+  const auto parameters = load_parameter_file<Parameters>(path);
+  EXPECT_EQ(parameters.tool_file, (folder / "b" / "x.urdf").string());
+  EXPECT_EQ(parameters.rate_hz, 4.0);
+}
+
+TEST(ParameterFile, ErrorsSayFileLineAndKey) {
+  const auto folder = scratch_folder();
+  const auto load = [&](const std::string& text) {
+    const auto path = write(folder / "p.yaml", text);
+    return error_of(folder, [&] { (void)load_parameter_file<Parameters>(path); });
+  };
+  EXPECT_EQ(load("rate_hz: 1\nrate_hz: 2\n"), "p.yaml:2: rate_hz: stands twice");
+  EXPECT_EQ(load("names: [a, [b]]\n"), "p.yaml:1: names: holds more than plain values");
+  EXPECT_EQ(load("\nrate_hz:\n"), "p.yaml:2: rate_hz: has no value, or more than a plain one");
+  EXPECT_EQ(load("- 1\n"), "p.yaml:1: is not a map of keys");
+  EXPECT_TRUE(load("a: [1\nb: 2\n").starts_with("p.yaml:")) << load("a: [1\nb: 2\n");
+  EXPECT_EQ(error_of(folder, [&] { (void)read_parameter_file(folder / "none.yaml"); }),
+            "none.yaml: no such file");
+}
+
+TEST(ParameterFile, ListsOfMaps) {
+  const auto folder = scratch_folder();
+  const auto path = write(folder / "l.yaml", "things:\n  - {rate_hz: 2}\n  - {names: [x]}\n");
+  const auto things = load_parameter_list<Parameters>(path, "things");
+  ASSERT_EQ(things.size(), 2u);
+  EXPECT_EQ(things[0].rate_hz, 2.0);
+  EXPECT_EQ(things[1].names, std::vector<std::string>{"x"});
+  EXPECT_EQ(error_of(folder, [&] { (void)read_parameter_list(path, "others"); }),
+            "l.yaml:1: things: unknown key");
+}
+
+}  // namespace
+}  // namespace furrow::graph
