@@ -201,4 +201,28 @@ void ParameterLoader::Assigner::visit(const ParameterInfo& info, std::vector<std
   value = strings != nullptr ? *strings : std::vector<std::string>{};
 }
 
+ParameterInfo PrefixedVisitor::prefixed(ParameterInfo info) const {
+  info.name = prefix_ + info.name;
+  return info;
+}
+
+void PrefixedVisitor::visit(const ParameterInfo& info, bool& value) {
+  inner_.visit(prefixed(info), value);
+}
+void PrefixedVisitor::visit(const ParameterInfo& info, std::int64_t& value) {
+  inner_.visit(prefixed(info), value);
+}
+void PrefixedVisitor::visit(const ParameterInfo& info, double& value) {
+  inner_.visit(prefixed(info), value);
+}
+void PrefixedVisitor::visit(const ParameterInfo& info, std::string& value) {
+  inner_.visit(prefixed(info), value);
+}
+void PrefixedVisitor::visit(const ParameterInfo& info, std::vector<double>& value) {
+  inner_.visit(prefixed(info), value);
+}
+void PrefixedVisitor::visit(const ParameterInfo& info, std::vector<std::string>& value) {
+  inner_.visit(prefixed(info), value);
+}
+
 }  // namespace furrow

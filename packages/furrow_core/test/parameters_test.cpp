@@ -82,5 +82,24 @@ TEST(Parameters, ListsDeclarationsWithDefaults) {
   EXPECT_EQ(type_name(declared[5].default_value), "list of strings");
 }
 
+struct Pair {
+  Parameters left;
+  Parameters right;
+  void visit(ParameterVisitor& v) {
+    PrefixedVisitor l(v, "left_");
+    left.visit(l);
+    PrefixedVisitor r(v, "right_");
+    right.visit(r);
+  }
+};
+
+TEST(Parameters, PrefixesTellPartsApart) {
+  Pair pair;
+  ParameterLoader::load({{"right_views", std::int64_t{9}, {}}}, pair);
+  EXPECT_EQ(pair.left.views, 2);
+  EXPECT_EQ(pair.right.views, 9);
+  EXPECT_EQ(declared_parameters<Pair>().size(), 12u);
+}
+
 }  // namespace
 }  // namespace furrow

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -108,6 +109,25 @@ class ParameterLoader {
    private:
     const std::vector<GivenParameter>& given_;
   };
+};
+
+/// Visits a part of a struct with each name behind a prefix, so that two parts with like names fit
+/// into one struct: `PrefixedVisitor wheel(v, "wheel_"); wheel_parameters.visit(wheel);`
+class PrefixedVisitor final : public ParameterVisitor {
+ public:
+  PrefixedVisitor(ParameterVisitor& inner, std::string prefix)
+      : inner_(inner), prefix_(std::move(prefix)) {}
+  void visit(const ParameterInfo& info, bool& value) override;
+  void visit(const ParameterInfo& info, std::int64_t& value) override;
+  void visit(const ParameterInfo& info, double& value) override;
+  void visit(const ParameterInfo& info, std::string& value) override;
+  void visit(const ParameterInfo& info, std::vector<double>& value) override;
+  void visit(const ParameterInfo& info, std::vector<std::string>& value) override;
+
+ private:
+  [[nodiscard]] ParameterInfo prefixed(ParameterInfo info) const;
+  ParameterVisitor& inner_;
+  std::string prefix_;
 };
 
 /// What `Parameters` declares, with its defaults.
