@@ -28,7 +28,7 @@ struct FieldParameters {
   std::int64_t weed_leaves_max = 6;
 
   bool crop = true;  ///< false: weeds only
-  std::string crop_species = "Beta vulgaris";
+  std::string crop_species = "sugar_beet";
   double row_spacing_m = 0.5;
   double row_offset_m = 0.0;
   double plant_spacing_m = 0.19;
@@ -46,10 +46,10 @@ struct FieldParameters {
 };
 
 /// A field of these parameters. The expected number of weeds is weeds_per_m2 times the area, also
-/// with minimum distances: a weed that stands too near is placed anew. Deterministic in
-/// (parameters, species, seed); crop and weeds use streams of their own, so that the weeds' number
-/// and species do not depend on the crop. Fails with kOutOfRange (a parameter, or more than
-/// kMaxPlants), kNotFound (a species) or kNoSolution (the distances leave no room).
+/// with minimum distances: a weed that stands too near is placed anew. Deterministic in (parameters,
+/// species, seed); crop and weeds draw from streams of their own. Fails with kOutOfRange (a
+/// parameter, or more than kMaxPlants), kNotFound (a species) or kNoSolution (the distances leave
+/// no room).
 [[nodiscard]] Result<FieldModel> generate_field(const FieldParameters& parameters,
                                                 const SpeciesTable& species, std::uint64_t seed);
 

@@ -12,35 +12,38 @@ namespace furrow::field {
 
 enum class GrowthForm : std::uint8_t { kBroadleaf, kGrass };
 
-/// The outline of a leaf seen from above, for renderers.
-enum class LeafOutline : std::uint8_t {
-  kOval,
-  kRound,
-  kLanceolate,
-  kHeart,
+/// How a plant is built, for renderers.
+enum class LeafForm : std::uint8_t {
+  kBeet,
+  kBroadleaf,
   kLobed,
+  kGrass,
   kFeathery,
-  kBlade
+  kTrifoliate,
+  kRosette,
+  kThistle,
+  kWhorled,
 };
 
+/// "broadleaf", "grass".
 [[nodiscard]] std::string_view to_string(GrowthForm form);
-[[nodiscard]] std::string_view to_string(LeafOutline outline);
+/// "beet", "broadleaf", "lobed", and so on.
+[[nodiscard]] std::string_view to_string(LeafForm form);
 
-/// What is known of a species. Names are botanical binomials; figures are Furrow's own defaults, to
-/// be replaced by the user's in params/species.yaml.
+/// What is known of a species. The figures are Furrow's own defaults, rough by nature, to be
+/// replaced by the user's in params/species.yaml.
 struct Species {
-  std::string name;
+  std::string name;       ///< lower case, words joined by '_'
+  std::string botanical;  ///< binomial
   PlantKind kind = PlantKind::kWeed;
   GrowthForm growth_form = GrowthForm::kBroadleaf;
+  LeafForm leaf_form = LeafForm::kBroadleaf;
   double beta = 1.0;        ///< harmfulness factor beta_w of the paper's harmfulness equation
   double priority = 1.0;    ///< class weight in planning; the paper uses 0.1 and 1.0
   bool beneficial = false;  ///< a dicot worth leaving where the crop does not suffer
-  LeafOutline leaf_outline = LeafOutline::kOval;
-  double leaf_aspect = 1.5;            ///< length over width of a leaf
   double radius_two_leaves_m = 0.012;  ///< canopy radius with two leaves
   double radius_eight_leaves_m = 0.05;
   double leaf_cover = 0.45;  ///< leaf area seen from above over the canopy's disc
-  std::vector<double> leaf_rgb = {0.30, 0.52, 0.20};  ///< mean reflectance, 0 to 1
 
   void visit(ParameterVisitor& v);
 };
@@ -50,7 +53,8 @@ struct Species {
 /// The leaf area seen from above of a canopy of that radius, in mm2.
 [[nodiscard]] double leaf_area_mm2(const Species& species, double radius_m);
 
-/// Species by name. Throws ConfigError on an empty or repeated name or an impossible figure.
+/// Species by name. Throws ConfigError on an empty, malformed or repeated name or a figure out of
+/// its range.
 class SpeciesTable {
  public:
   explicit SpeciesTable(std::vector<Species> species);
