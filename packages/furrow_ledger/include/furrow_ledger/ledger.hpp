@@ -25,7 +25,6 @@ enum class Outcome : std::uint8_t {
   kHit,       ///< crop: stem within the footprint radius of a spray's centre
 };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
-[[nodiscard]] std::string_view to_string(field::PlantKind kind);
 
 struct AccountParameters {
   double accurate_radius_m = 0.010;
@@ -99,6 +98,7 @@ struct Summary {
 struct Ledger {
   std::vector<LedgerRow> rows;
   Summary summary;
+  AccountParameters parameters;
   double length_m = 0.0;
   double width_m = 0.0;
   std::vector<double> row_y_m;

@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <unordered_map>
+
+#include "association.hpp"
+#include "furrow_ledger/ledger.hpp"
+#include "point_grid.hpp"
+#include "summary.hpp"
+#include "validation.hpp"
+
+namespace furrow::ledger {
+namespace {
+
+using field::Plant;
+using field::PlantKind;
+
+/// What sprays did to one plant. Indices into the sorted sprays; kNobody where there is none.
+struct Sprayed {
+  std::size_t landed = kNobody;  ///< the nearest whose footprint took the stem
+  double landed_m = 0.0;
+  std::size_t aimed = kNobody;  ///< the nearest of those aimed at the plant
+  double aimed_m = 0.0;
+};
+
+auto key(const Spray& s) {
+  return std::make_tuple(s.time.count_ns(), s.axis, s.p_F_m.x(), s.p_F_m.y(), s.aim_F_m.x(),
+                         s.aim_F_m.y(), s.radius_m);
+}
+auto key(const TrackView& t) {
+  return std::make_tuple(t.id, t.p_F_m.x(), t.p_F_m.y(), t.kind, t.confirmed, t.radius_m);
+}
+auto key(const Decision& d) {
+  return std::make_tuple(d.track_id, d.time.count_ns(), d.action, d.reason, d.axis);
+}
+auto key(const Plant& p) {
+  return std::make_tuple(p.p_F_m.x(), p.id);
+}
+
+template <class T>
+std::vector<T> sorted(std::vector<T> items) {
+  std::sort(items.begin(), items.end(), [](const T& a, const T& b) { return key(a) < key(b); });
+  return items;
+}
+
+/// One account in the making: everything in one order, whatever the order of the input.
+class Accountant {
+ public:
+  Accountant(const field::FieldModel& truth, const RunRecord& record,
+             const AccountParameters& parameters)
+      : parameters_(parameters),
+        info_(record.info),
+        plants_(sorted(truth.plants)),
+        tracks_(sorted(record.tracks)),
+        decisions_(sorted(record.decisions)),
+        sprays_(sorted(record.sprays)) {
+    ledger_.parameters = parameters;
+    ledger_.length_m = truth.length_m;
+    ledger_.width_m = truth.width_m;
+    ledger_.row_y_m = truth.row_y_m;
+    ledger_.summary.field = truth.name;
+    ledger_.summary.source = truth.source;
+  }
+
+  Ledger run() {
+    std::vector<Eigen::Vector2d> stems;
+    std::vector<std::int64_t> ids;
+    double cell_m =
+        std::max({parameters_.association_radius_m, parameters_.partial_radius_m, 0.01});
+    for (const Spray& spray : sprays_) cell_m = std::max(cell_m, spray.radius_m);
+    for (const Plant& plant : plants_) {
+      stems.push_back(plant.p_F_m);
+      ids.push_back(plant.id);
+    }
+    const PointGrid grid(stems, cell_m);
+    association_ = associate(ids, grid, tracks_, parameters_.association_radius_m);
+    index_decisions();
+    apply_sprays(grid);
+    for (std::size_t i = 0; i < plants_.size(); ++i) ledger_.rows.push_back(row(i));
+    summarise();
+    return std::move(ledger_);
+  }
+
+ private:
+  void index_decisions() {
+    decision_of_track_.assign(tracks_.size(), kNobody);
+    std::unordered_map<std::int64_t, std::size_t> latest;
+    for (std::size_t d = 0; d < decisions_.size(); ++d) latest[decisions_[d].track_id] = d;
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      if (const auto found = latest.find(tracks_[t].id); found != latest.end()) {
+        decision_of_track_[t] = found->second;
+      }
+      track_of_id_.emplace(tracks_[t].id, t);
+    }
+  }
+
+  static void keep_nearest(std::size_t& best, double& best_m, std::size_t spray,
+                           double distance_m) {
+    if (best != kNobody && best_m <= distance_m) return;
+    best = spray;
+    best_m = distance_m;
+  }
+
+  void apply_sprays(const PointGrid& grid) {
+    sprayed_.resize(plants_.size());
+    for (std::size_t s = 0; s < sprays_.size(); ++s) {
+      const Spray& spray = sprays_[s];
+      bool took_weed = false;
+      const double reach_m = std::max(spray.radius_m, parameters_.partial_radius_m);
+      grid.for_each_within(spray.p_F_m, reach_m, [&](std::size_t plant, double distance_m) {
+        const bool weed = plants_[plant].kind == PlantKind::kWeed;
+        if (distance_m > (weed ? parameters_.partial_radius_m : spray.radius_m)) return;
+        took_weed = took_weed || weed;
+        keep_nearest(sprayed_[plant].landed, sprayed_[plant].landed_m, s, distance_m);
+      });
+      if (!took_weed) ++ledger_.summary.sprays_without_weed;
+
+      const auto aim_at = [&](std::size_t plant) {
+        keep_nearest(sprayed_[plant].aimed, sprayed_[plant].aimed_m, s,
+                     (spray.p_F_m - plants_[plant].p_F_m).norm());
+      };
+      for (const std::int64_t id : spray.track_ids) {
+        const auto track = track_of_id_.find(id);
+        if (track == track_of_id_.end()) continue;
+        const std::size_t plant = association_.plant_of_track[track->second];
+        if (plant != kNobody) aim_at(plant);
+      }
+      if (spray.track_ids.empty()) {
+        grid.for_each_within(spray.aim_F_m, parameters_.partial_radius_m,
+                             [&](std::size_t plant, double) { aim_at(plant); });
+      }
+    }
+  }
+
+  /// The last word on a plant: on its own track, or else the latest on a duplicate.
+  [[nodiscard]] const Decision* decision_on(std::size_t plant) const {
+    const std::size_t track = association_.track_of_plant[plant];
+    if (track == kNobody) return nullptr;
+    if (decision_of_track_[track] != kNobody) return &decisions_[decision_of_track_[track]];
+    const Decision* latest = nullptr;
+    for (const std::size_t duplicate : association_.duplicates[plant]) {
+      const std::size_t d = decision_of_track_[duplicate];
+      if (d == kNobody) continue;
+      if (latest == nullptr || decisions_[d].time > latest->time) latest = &decisions_[d];
+    }
+    return latest;
+  }
+
+  [[nodiscard]] Reason cause(std::size_t plant, const Decision* decision) const {
+    const Eigen::Vector2d& p_F = plants_[plant].p_F_m;
+    const auto beyond = [](const std::optional<std::pair<double, double>>& span, double v) {
+      return span && (v < span->first || v > span->second);
+    };
+    if (sprayed_[plant].aimed != kNobody) return Reason::kPlacement;
+    if (beyond(info_.reach_y_m, p_F.y())) return Reason::kOutside;
+    if (beyond(info_.passed_x_m, p_F.x())) return Reason::kEndOfRun;
+    const std::size_t track = association_.track_of_plant[plant];
+    if (track == kNobody) return Reason::kUndetected;
+    if (!tracks_[track].confirmed) return Reason::kUnconfirmed;
+    if (tracks_[track].kind == PlantKind::kCrop) return Reason::kMisclassified;
+    if (decision == nullptr || decision->action == Action::kNone) return Reason::kUnreachable;
+    if (decision->action == Action::kTreat) return Reason::kFault;
+    return decision->reason;
+  }
+
+  [[nodiscard]] LedgerRow row(std::size_t i) const {
+    const Plant& plant = plants_[i];
+    LedgerRow row{.plant_id = plant.id,
+                  .kind = plant.kind,
+                  .species = plant.species,
+                  .p_F_m = plant.p_F_m,
+                  .radius_m = plant.radius_m,
+                  .area_mm2 = plant.area_mm2};
+    const Decision* decision = decision_on(i);
+    if (decision != nullptr) {
+      row.action = decision->action;
+      if (decision->action == Action::kTreat) row.axis = decision->axis;
+    }
+    const Sprayed& sprayed = sprayed_[i];
+    const bool landed = sprayed.landed != kNobody;
+    if (plant.kind == PlantKind::kCrop) {
+      row.outcome = landed ? Outcome::kHit : Outcome::kSpared;
+    } else if (landed) {
+      row.outcome = sprayed.landed_m <= parameters_.accurate_radius_m ? Outcome::kAccurate
+                                                                      : Outcome::kPartial;
+    } else {
+      row.reason = cause(i, decision);
+    }
+    if (landed || sprayed.aimed != kNobody) {
+      const Spray& spray = sprays_[landed ? sprayed.landed : sprayed.aimed];
+      row.axis = spray.axis;
+      row.sprayed = spray.time;
+      row.spray_distance_m = landed ? sprayed.landed_m : sprayed.aimed_m;
+    }
+    if (const std::size_t track = association_.track_of_plant[i]; track != kNobody) {
+      row.track_id = tracks_[track].id;
+      row.track_kind = tracks_[track].kind;
+      row.track_distance_m = association_.distance_m[i];
+    }
+    return row;
+  }
+
+  void summarise() {
+    Summary& summary = ledger_.summary;
+    take_run_info(info_, summary);
+    count_rows(ledger_.rows, summary);
+    summary.sprays = static_cast<std::int64_t>(sprays_.size());
+    summary.sprays_by_axis.assign(info_.axis_travel_m.size(), 0);
+    std::vector<double> aim_mm;
+    for (const Spray& spray : sprays_) {
+      const auto axis = static_cast<std::size_t>(spray.axis);
+      if (axis >= summary.sprays_by_axis.size()) summary.sprays_by_axis.resize(axis + 1, 0);
+      ++summary.sprays_by_axis[axis];
+      aim_mm.push_back((spray.p_F_m - spray.aim_F_m).norm() * 1e3);
+    }
+    for (std::size_t i = 0; i < plants_.size(); ++i) {
+      const Sprayed& sprayed = sprayed_[i];
+      if (plants_[i].kind != PlantKind::kWeed || sprayed.aimed == kNobody) continue;
+      const bool shared = sprays_[sprayed.aimed].track_ids.size() > 1;
+      ledger_.placement_errors_mm.push_back(shared ? aim_mm[sprayed.aimed] : sprayed.aimed_m * 1e3);
+    }
+    std::sort(aim_mm.begin(), aim_mm.end());
+    std::sort(ledger_.placement_errors_mm.begin(), ledger_.placement_errors_mm.end());
+    set_errors(ledger_.placement_errors_mm, aim_mm, summary);
+    summary.tracks_total = static_cast<std::int64_t>(tracks_.size());
+    summary.tracks_without_plant = association_.tracks_without_plant;
+  }
+
+  const AccountParameters& parameters_;
+  const RunInfo& info_;
+  std::vector<Plant> plants_;
+  std::vector<TrackView> tracks_;
+  std::vector<Decision> decisions_;
+  std::vector<Spray> sprays_;
+  Association association_;
+  std::vector<std::size_t> decision_of_track_;
+  std::unordered_map<std::int64_t, std::size_t> track_of_id_;
+  std::vector<Sprayed> sprayed_;
+  Ledger ledger_;
+};
+
+}  // namespace
+
+Result<Ledger> account(const field::FieldModel& truth, const RunRecord& record,
+                       const AccountParameters& parameters) {
+  if (const Status valid = validate(truth, record, parameters); !valid) return valid.error();
+  return Accountant(truth, record, parameters).run();
+}
+
+Result<Ledger> account_tracks(const field::FieldModel& strip, const RunRecord& record,
+                              const AccountParameters& parameters) {
+  field::FieldModel seen{.name = strip.name,
+                         .source = strip.source,
+                         .length_m = strip.length_m,
+                         .width_m = strip.width_m,
+                         .row_y_m = strip.row_y_m,
+                         .plants = {}};
+  for (const TrackView& track : record.tracks) {
+    if (!track.confirmed) continue;
+    field::Plant plant;
+    plant.id = track.id;
+    plant.kind = track.kind;
+    plant.species = track.species;
+    plant.p_F_m = track.p_F_m;
+    plant.radius_m = track.radius_m;
+    plant.area_mm2 = track.area_mm2;
+    seen.plants.push_back(std::move(plant));
+  }
+  Result<Ledger> ledger = account(seen, record, parameters);
+  if (ledger) ledger->summary.against_truth = false;
+  return ledger;
+}
+
+}  // namespace furrow::ledger

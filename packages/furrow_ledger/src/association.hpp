@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "furrow_ledger/run_record.hpp"
+#include "point_grid.hpp"
+
+namespace furrow::ledger {
+
+inline constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+/// Which track stands for which plant.
+struct Association {
+  std::vector<std::size_t> track_of_plant;           ///< index of the track; kNobody
+  std::vector<double> distance_m;                    ///< of that track to the plant
+  std::vector<std::size_t> plant_of_track;           ///< also of duplicates; kNobody
+  std::vector<std::vector<std::size_t>> duplicates;  ///< per plant, further tracks near it
+  std::int64_t tracks_without_plant = 0;
+};
+
+/// Pairs sorted tracks and plants as account() describes. `grid` holds the plants' stems.
+[[nodiscard]] Association associate(const std::vector<std::int64_t>& plant_ids,
+                                    const PointGrid& grid, const std::vector<TrackView>& tracks,
+                                    double radius_m);
+
+}  // namespace furrow::ledger
