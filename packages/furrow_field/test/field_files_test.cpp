@@ -1,0 +1,222 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "field_test_support.hpp"
+#include "furrow_field/field_csv.hpp"
+#include "furrow_field/field_geojson.hpp"
+
+namespace furrow::field {
+namespace {
+
+constexpr GeoOrigin kOrigin{50.6149, 6.9874, 0.7};
+using Reader = Result<FieldModel> (*)(const std::string&);
+
+Result<FieldModel> read_csv(const std::string& text) {
+  return from_csv(text, "field.csv");
+}
+Result<FieldModel> read_geojson(const std::string& text) {
+  return from_geojson(text, "field.geojson");
+}
+
+void expect_error(const Result<FieldModel>& result, std::initializer_list<const char*> parts) {
+  ASSERT_FALSE(result.ok());
+  for (const char* part : parts) {
+    EXPECT_NE(result.error().message.find(part), std::string::npos) << result.error().message;
+  }
+}
+
+/// Truncated and damaged files read as a valid field or fail with the file's name; nothing else.
+void survive_damage(const std::string& whole, Reader read, const std::string& file) {
+  Random random(12);
+  const auto last = static_cast<std::int64_t>(whole.size()) - 1;
+  for (int i = 0; i < 600; ++i) {
+    std::string text = whole;
+    if (i % 3 == 0) text.resize(static_cast<std::size_t>(random.integer(0, last)));
+    if (i % 3 == 1) text.erase(static_cast<std::size_t>(random.integer(0, last)), 1);
+    for (int k = 0; i % 3 == 2 && k < 4; ++k) {
+      text[static_cast<std::size_t>(random.integer(0, last))] =
+          static_cast<char>(random.integer(0, 255));
+    }
+    const Result<FieldModel> field = read(text);
+    if (field.ok()) {
+      EXPECT_TRUE(validate(*field).ok());
+    } else {
+      EXPECT_EQ(field.error().message.rfind(file, 0), 0u) << field.error().message;
+    }
+  }
+  for (int i = 0; i < 300; ++i) {
+    std::string noise(static_cast<std::size_t>(random.integer(0, 200)), ' ');
+    for (char& c : noise) c = static_cast<char>(random.integer(0, 255));
+    EXPECT_FALSE(read(noise).ok());
+  }
+}
+
+TEST(FieldCsv, ReadsBackWhatItWrote) {
+  for (int seed = 0; seed < 20; ++seed) {
+    const FieldModel field = random_field(seed, seed * 5);
+    const Result<std::string> text = to_csv(field);
+    ASSERT_TRUE(text.ok());
+    const Result<FieldModel> back = read_csv(*text);
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    expect_equal(*back, field);
+  }
+}
+
+TEST(FieldCsv, HasOneLineAPlantBelowAHeaderWithUnits) {
+  FieldModel field;
+  field.name = "n";
+  field.source = "s";
+  field.length_m = 2.0;
+  field.width_m = 1.0;
+  field.row_y_m = {0.25};
+  field.plants.push_back({3, PlantKind::kWeed, "violet", {1.5, -0.25}, 0.02, 300.0, 4, 0.5});
+  EXPECT_EQ(*to_csv(field),
+            "# name: n\n# source: s\n# length_m: 2\n# width_m: 1\n# row_y_m: 0.25\n"
+            "id,kind,species,x_m,y_m,radius_m,area_mm2,leaves,heading_rad\n"
+            "3,weed,violet,1.5,-0.25,0.02,300,4,0.5\n");
+}
+
+TEST(FieldCsv, ReadsABareListOfPlants) {
+  const Result<FieldModel> field = read_csv("y_m,kind,x_m\r\n0.5,weed,3\r\n\r\n-0.25,crop,1\r\n");
+  ASSERT_TRUE(field.ok()) << field.error().message;
+  EXPECT_EQ(field->source, "imported: field.csv");
+  EXPECT_EQ(field->length_m, 3.0);
+  EXPECT_EQ(field->width_m, 1.0);
+  ASSERT_EQ(field->plants.size(), 2u);
+  EXPECT_EQ(field->plants[0].kind, PlantKind::kCrop);
+  EXPECT_EQ(field->plants[0].id, 1);
+  EXPECT_EQ(field->plants[1].p_F_m, Eigen::Vector2d(3.0, 0.5));
+}
+
+TEST(FieldCsv, ErrorsNameFileLineAndColumn) {
+  const std::string header = "id,kind,species,x_m,y_m\n";
+  expect_error(read_csv(""), {"field.csv:", "no header"});
+  expect_error(read_csv("# name: x\n"), {"no header"});
+  expect_error(read_csv("# length_m: far\n" + header), {"field.csv:1: length_m", "'far'"});
+  expect_error(read_csv("# row_y_m: 0 nan\n" + header), {"field.csv:1: row_y_m", "'nan'"});
+  expect_error(read_csv("id,kind,x_m\n"), {"'y_m' is missing"});
+  expect_error(read_csv("kind,x_m,y_m,x_m\n"), {"'x_m' is there twice"});
+  expect_error(read_csv("kind,x,y_m\n"), {"'x' is not known"});
+  expect_error(read_csv(header + "0,weed,a,1,0\n1,weed,a,1\n"), {"field.csv:3: line", "4 cells"});
+  expect_error(read_csv(header + "0,tree,a,1,0\n"), {":2: kind: 'tree'"});
+  expect_error(read_csv(header + "0.5,weed,a,1,0\n"), {":2: id: '0.5'"});
+  expect_error(read_csv(header + "99999999999999999999,weed,a,1,0\n"), {":2: id"});
+  expect_error(read_csv(header + "0,weed,a,inf,0\n"), {":2: x_m: 'inf'"});
+  expect_error(read_csv(header + "0,weed,a,1,1 m\n"), {":2: y_m: '1 m'"});
+  expect_error(read_csv(header + "0,weed,\"a,1,0\n"), {":2: line", "quote"});
+  expect_error(read_csv(header + "0,weed,\"a\"b,1,0\n"), {":2: line", "quote"});
+  expect_error(read_csv(header + "0,weed,a,1,0\n0,weed,a,2,0\n"), {"plant 0", "unique"});
+  expect_error(read_csv("# length_m: 1\n" + header + "0,weed,a,2,0\n"), {"plant 0", "outside"});
+  expect_error(read_csv(header + "0,weed,a,-1,0\n"), {"plant 0", "outside"});
+}
+
+TEST(FieldCsv, SurvivesDamage) {
+  survive_damage(*to_csv(random_field(3, 12)), read_csv, "field.csv");
+}
+
+TEST(FieldGeoJson, ReadsBackWhatItWroteInMetres) {
+  for (int seed = 0; seed < 20; ++seed) {
+    const FieldModel field = random_field(seed, seed * 5);
+    const Result<FieldModel> back = read_geojson(*to_geojson(field));
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    expect_equal(*back, field);
+  }
+}
+
+TEST(FieldGeoJson, ReadsBackWhatItWroteInDegrees) {
+  for (int seed = 0; seed < 20; ++seed) {
+    FieldModel field = random_field(seed, 40);
+    field.plants.back().p_F_m = {field.length_m, 0.5 * field.width_m};
+    const Result<FieldModel> back = read_geojson(*to_geojson(field, kOrigin));
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    expect_equal(*back, field, 1e-7);
+  }
+}
+
+TEST(FieldGeoJson, DegreesAgreeWithTheEllipsoid) {
+  // At the equator a metre east is 1 / a radians; a metre north is 1 / (a (1 - e2)) radians.
+  const double a_m = 6378137.0;
+  const double e2 = 0.00669437999014;
+  const double deg = 180.0 / 3.14159265358979323846;
+  const GeoOrigin equator{0.0, 10.0, 0.0};
+  EXPECT_NEAR(to_wgs84(equator, {100.0, 0.0}).x() - 10.0, 100.0 / a_m * deg, 1e-12);
+  EXPECT_NEAR(to_wgs84(equator, {0.0, 100.0}).y(), 100.0 / (a_m * (1.0 - e2)) * deg, 1e-12);
+  // Heading pi/2: the field's x points north.
+  const Eigen::Vector2d north = to_wgs84({50.0, 7.0, 1.5707963267948966}, {100.0, 0.0});
+  EXPECT_NEAR(north.x(), 7.0, 1e-12);
+  EXPECT_GT(north.y(), 50.0);
+}
+
+TEST(FieldGeoJson, ReadsPointsOfOtherPrograms) {
+  const std::string text = R"({"type":"FeatureCollection","features":[
+    {"type":"Feature","geometry":{"type":"Point","coordinates":[10.0001,0]},
+     "properties":{"kind":"weed"}}]})";
+  expect_error(read_geojson(text), {"origin must be given"});
+  const Result<FieldModel> field = from_geojson(text, "f", GeoOrigin{0.0, 10.0, 0.0});
+  ASSERT_TRUE(field.ok()) << field.error().message;
+  EXPECT_NEAR(field->plants.at(0).p_F_m.x(), 11.131949, 1e-5);
+  EXPECT_EQ(field->source, "imported: f");
+}
+
+std::string one_feature(const std::string& geometry, const std::string& properties,
+                        const std::string& furrow = R"({"coordinates":"field"})") {
+  return R"({"type":"FeatureCollection","furrow":)" + furrow +
+         R"(,"features":[{"type":"Feature","geometry":)" + geometry + R"(,"properties":)" +
+         properties + "}]}";
+}
+
+TEST(FieldGeoJson, ErrorsNameFileFeatureAndKey) {
+  const std::string point = R"({"type":"Point","coordinates":[1,0]})";
+  const std::string weed = R"({"kind":"weed"})";
+  EXPECT_TRUE(read_geojson(one_feature(point, weed)).ok());
+  expect_error(read_geojson(""), {"field.geojson", "parse error"});
+  expect_error(read_geojson("[]"), {"FeatureCollection"});
+  expect_error(read_geojson(R"({"type":"Feature"})"), {"FeatureCollection"});
+  expect_error(read_geojson(R"({"type":"FeatureCollection","furrow":{"coordinates":"field"}})"),
+               {"features"});
+  expect_error(read_geojson(one_feature("null", weed)), {"feature 0: geometry"});
+  expect_error(read_geojson(one_feature(R"({"type":"Point","coordinates":[1]})", weed)),
+               {"feature 0: coordinates"});
+  expect_error(read_geojson(one_feature(R"({"type":"Point","coordinates":["1",2]})", weed)),
+               {"feature 0: coordinates"});
+  expect_error(read_geojson(one_feature(point, "{}")), {"feature 0: kind"});
+  expect_error(read_geojson(one_feature(point, R"({"kind":1})")), {"feature 0: kind"});
+  expect_error(read_geojson(one_feature(point, R"({"kind":"weed","id":1.5})")), {"id"});
+  expect_error(read_geojson(one_feature(point, R"({"kind":"weed","id":18446744073709551615})")),
+               {"id", "too large"});
+  expect_error(read_geojson(one_feature(point, R"({"kind":"weed","leaves":4000000000})")),
+               {"leaves", "too large"});
+  expect_error(read_geojson(one_feature(point, R"({"kind":"weed","radius_m":"x"})")),
+               {"feature 0: radius_m"});
+  expect_error(read_geojson(one_feature(point, weed, "1")), {"furrow", "object"});
+  expect_error(read_geojson(one_feature(point, weed, "{}")), {"furrow.coordinates"});
+  expect_error(read_geojson(one_feature(point, weed, R"({"coordinates":"wgs84"})")),
+               {"origin", "missing"});
+  expect_error(read_geojson(one_feature(point, weed, R"({"coordinates":"wgs84","origin":{
+        "latitude_deg":95,"longitude_deg":0,"heading_rad":0}})")),
+               {"origin", "not on the earth"});
+  expect_error(read_geojson(one_feature(point, weed, R"({"coordinates":"field","length_m":0.5,
+        "width_m":1})")),
+               {"plant 0", "outside"});
+}
+
+TEST(FieldGeoJson, SurvivesDamage) {
+  survive_damage(*to_geojson(random_field(4, 6)), read_geojson, "field.geojson");
+  survive_damage(*to_geojson(random_field(4, 6), kOrigin), read_geojson, "field.geojson");
+  EXPECT_FALSE(read_geojson(std::string(200'000, '[')).ok());
+}
+
+TEST(FieldFiles, RefuseToWriteAnInvalidField) {
+  FieldModel field = random_field(5, 3);
+  EXPECT_FALSE(to_geojson(field, GeoOrigin{90.0, 0.0, 0.0}).ok());
+  field.plants[0].species = "\xff";
+  EXPECT_FALSE(to_geojson(field).ok());
+  field.plants[0].p_F_m.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(to_csv(field).ok());
+  EXPECT_FALSE(to_geojson(field).ok());
+}
+
+}  // namespace
+}  // namespace furrow::field
