@@ -44,6 +44,7 @@ enum class Outcome : std::uint8_t {
   kGated,      ///< contradicts the state; kept out
   kRecovered,  ///< the state was moved to repeated measurements that agree with each other
   kNoFix,      ///< a GNSS message without a position
+  kDuplicate,  ///< of a kind and stamp that is already there
   kTooOld,     ///< before the history's beginning
   kInvalid,    ///< not finite, a covariance that is not positive, or a stamp out of bounds
   kIgnored,    ///< of a kind that this estimator does not use

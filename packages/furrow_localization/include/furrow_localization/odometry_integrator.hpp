@@ -17,14 +17,16 @@ struct OdometryIntegratorParameters {
   double max_extrapolation_s = 0.5;
   double max_gap_s = 1.0;
   double odometry_timeout_s = 0.2;
+  double degraded_position_sigma_m = 0.10;
+  double lost_position_sigma_m = 1.0;
 
   void visit(ParameterVisitor& v);
 };
 
-/// Dead reckoning: speed and yaw rate of the wheels, held between measurements, integrated along
-/// circular arcs; the covariance grows by the measurements' variances. IMU and GNSS are ignored.
-/// A measurement older than the newest is counted as too old. A gap longer than `max_gap_s` is not
-/// driven across: the pose stays and motion begins again at the new measurement.
+/// Dead reckoning: the mean of neighbouring wheel measurements is driven along a circular arc, the
+/// newest is held beyond it; the covariance grows by the measurements' variances. IMU and GNSS are
+/// ignored. A measurement older than the newest is counted as too old. A gap longer than
+/// `max_gap_s` is not driven across: the pose stays and motion begins again at the new measurement.
 class OdometryIntegrator final : public PoseEstimator {
  public:
   /// Throws ConfigError when a parameter is out of its range.

@@ -24,16 +24,19 @@ struct PoseEstimate {
   Eigen::Matrix2d twist_covariance = Eigen::Matrix2d::Zero();
 };
 
-/// Counts of one sensor's measurements by what became of them.
+/// Counts of one sensor's measurements by what became of them when they came.
 struct SensorCounts {
   std::int64_t used = 0;  ///< in order, late and recovered ones together
   std::int64_t late = 0;
   std::int64_t gated = 0;
   std::int64_t recovered = 0;
   std::int64_t no_fix = 0;
+  std::int64_t duplicate = 0;
   std::int64_t too_old = 0;
   std::int64_t invalid = 0;
   std::int64_t ignored = 0;
+
+  void count(Outcome outcome);
 };
 
 enum class HealthLevel : std::uint8_t { kOk, kDegraded, kLost };

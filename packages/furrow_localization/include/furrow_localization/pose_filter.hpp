@@ -18,7 +18,7 @@ struct PoseFilterParameters {
   double initial_speed_scale_sigma = 0.02;
   double initial_wheel_curvature_sigma_radpm = 0.01;
 
-  double acceleration_sigma = 0.5;
+  double acceleration_sigma = 1.0;
   double yaw_acceleration_sigma = 0.5;
   double slip_sigma_m_per_sqrt_s = 0.001;
   double gyro_bias_walk = 1e-4;
@@ -37,7 +37,8 @@ struct PoseFilterParameters {
   bool use_gnss = true;
 
   double gate_probability = 0.999;
-  std::int64_t recovery_repeats = 5;
+  std::int64_t gnss_recovery_repeats = 10;
+  std::int64_t rate_recovery_repeats = 3;
   double recovery_heading_sigma_rad = 0.05;
 
   double history_s = 1.0;
@@ -60,8 +61,10 @@ struct PoseFilterParameters {
 ///
 /// Measurements of the last `history_s` are kept, and one that comes late is put in at its own
 /// stamp and what came after it is applied again: the estimate is that of the ordered sequence, to
-/// the bit. GNSS that contradicts the state is kept out until `recovery_repeats` in a row agree
-/// with each other.
+/// the bit. GNSS that contradicts the state is kept out until `gnss_recovery_repeats` in a row
+/// agree with each other, rates likewise for `rate_recovery_repeats`. A stamp further ahead than
+/// `max_jump_ahead_s` is not valid, until `gnss_recovery_repeats` measurements in a row say so:
+/// then motion begins again there. A clock that was set back needs a reset().
 ///
 /// Without reset() the filter starts at the first measurement with the initial pose of its
 /// parameters. The heading must be known within a few times initial_heading_sigma_rad: one that is
