@@ -1,131 +1,17 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <string_view>
 
-#include "furrow_actuation/axis_driver.hpp"
-#include "furrow_actuation/bounded_vector.hpp"
+#include "furrow_actuation/axis_controller_types.hpp"
 #include "furrow_actuation/crossing.hpp"
 #include "furrow_actuation/motion_profile.hpp"
 #include "furrow_actuation/nozzle.hpp"
-#include "furrow_core/parameters.hpp"
 #include "furrow_geometry/tool_model.hpp"
 
 namespace furrow::actuation {
-
-inline constexpr std::size_t kMaxStopTargets = 16;
-inline constexpr std::size_t kMaxPlanStops = 64;
-inline constexpr std::size_t kMaxProtectedPlants = 512;
-inline constexpr std::size_t kMaxControllerEvents = 16;
-
-using TargetIds = BoundedVector<std::int64_t, kMaxStopTargets>;
-
-/// One spray that the plan asks of this axis.
-struct PlannedStop {
-  std::int64_t stop_id = 0;  ///< of this plan; targets, not stops, are recognized in later plans
-  Eigen::Vector2d p_F = Eigen::Vector2d::Zero();  ///< where the middle of the spray shall land
-  TargetIds targets;                              ///< the tracks that it treats, at least one
-  Time intended;                                  ///< when the plan means it to land; gives order
-  Time observed;                                  ///< the newest view of its targets
-  bool fire_while_moving = false;  ///< sprayed in passing, on the way to the stop after it
-};
-
-/// A crop, or whatever else must not be sprayed.
-struct ProtectedPlant {
-  std::int64_t id = 0;
-  Eigen::Vector2d p_F = Eigen::Vector2d::Zero();
-};
-
-/// Why the tool was made safe. All but kNone are latched until reset().
-enum class SafetyCause {
-  kNone,
-  kEmergencyStop,
-  kPeerLost,         ///< the planner or the localization is gone
-  kPlanStale,        ///< no plan within its deadline
-  kOdometryStale,    ///< no odometry within its deadline
-  kOdometryInvalid,  ///< not finite
-  kReadingStale,     ///< the drive does not answer
-  kDriveFault,       ///< the drive reports a fault, or lost power while in use
-  kPositionLimit,    ///< measured position outside the limits
-  kFollowingError,
-  kValveFault,
-  kProtectionOverflow,  ///< more protected plants than can be checked
-};
-[[nodiscard]] std::string_view to_string(SafetyCause cause);
-
-/// Why a stop was not sprayed, or cut short.
-enum class SkipReason {
-  kNone,
-  kLate,           ///< the axis could not be there in time
-  kStale,          ///< its targets were not seen for too long
-  kProtectedCrop,  ///< too near a protected plant, by the newest tracks
-  kUnreachable,    ///< beyond the axis' reach
-  kFault,          ///< the tool was made safe
-  kStanding,       ///< the robot stood or reversed while spraying
-};
-[[nodiscard]] std::string_view to_string(SkipReason reason);
-
-enum class ControllerMode {
-  kWaiting,  ///< a plan, odometry or a ready drive is missing since the start or the last reset
-  kRunning,
-  kSafe,  ///< made safe; latched until reset()
-};
-[[nodiscard]] std::string_view to_string(ControllerMode mode);
-
-enum class ControllerEventKind {
-  kSprayOpened,
-  kSprayClosed,  ///< reason not kNone: cut short
-  kStopSkipped,
-  kMadeSafe,
-  kReset,
-};
-
-struct ControllerEvent {
-  ControllerEventKind kind = ControllerEventKind::kMadeSafe;
-  Time time;                 ///< of the command or decision
-  std::int64_t stop_id = 0;  ///< sprays and skips
-  TargetIds targets;         ///< sprays and skips
-  Eigen::Vector2d aim_F = Eigen::Vector2d::Zero();
-  Eigen::Vector2d p_F = Eigen::Vector2d::Zero();  ///< sprays: where its middle lands, as computed
-  Time landing;                                   ///< sprays: when its middle lands, as computed
-  double q_m = 0.0;                               ///< sprays: the axis' measured position
-  SkipReason reason = SkipReason::kNone;
-  SafetyCause cause = SafetyCause::kNone;
-  bool dry_run = false;  ///< a spray that was only acted out
-};
-
-using ControllerEvents = BoundedVector<ControllerEvent, kMaxControllerEvents>;
-
-struct AxisControllerParameters {
-  double dwell_s = 0.010;
-  double min_off_s = 0.004;
-  double arrive_early_s = 0.030;
-  double placement_tolerance_m = 0.010;
-  double protection_radius_m = 0.030;
-  double max_fire_speed_mps = 0.5;
-  double plan_deadline_s = 2.0;
-  double odometry_deadline_s = 0.10;
-  double reading_deadline_s = 0.02;
-  double max_target_age_s = 10.0;
-  double following_error_limit_m = 0.03;
-  double following_error_time_s = 0.02;
-  double position_margin_m = 0.002;
-  bool dry_run = false;
-  CrossingParameters crossing;
-
-  void visit(ParameterVisitor& v);
-};
-
-/// What the loop writes, in this order: first the valve, then the axis.
-struct ControllerOutput {
-  bool valve_open = false;
-  AxisCommand axis;
-  ControllerMode mode = ControllerMode::kWaiting;
-  SafetyCause cause = SafetyCause::kNone;
-  Time cause_time;
-  ControllerEvents events;
-};
 
 /// The control of one axis and its nozzle: takes the newest plan, odometry and drive reading, and
 /// says each cycle where the axis shall be and whether the valve is open. Called from one thread;
@@ -152,38 +38,110 @@ class AxisController {
   void set_valve_fault(bool fault) { valve_fault_ = fault; }
   void set_dry_run(bool dry_run) { parameters_.dry_run = dry_run; }
   void set_calibration(const NozzleCalibration& calibration);
-  /// Leaves kSafe for kWaiting at the next update, unless the cause is still there.
+  /// Leaves kSafe for kWaiting once the axis has stopped; a cause that is still there makes the
+  /// tool safe again at once.
   void reset() { reset_requested_ = true; }
 
   /// One cycle at `now`; the axis command is the setpoint for now + period. @pre period > 0.
   [[nodiscard]] ControllerOutput update(Time now, Duration period);
 
+  /// The setpoint at the last update.
   [[nodiscard]] const MotionState& setpoint() const { return setpoint_; }
   [[nodiscard]] NozzleUse use(Time now) const { return meter_.use(now); }
 
  private:
   struct Spray {
     PlannedStop stop;
-    ValveWindow window;
-    Time emission;
-    Time emission_end;
-    bool valve_open = false;
+    Time emission;      ///< middle of the spray at the nozzle
+    Time close;         ///< command
+    Time emission_end;  ///< the axis stays until then
+    bool open = true;
+    bool passing = false;
     bool dry_run = false;
   };
+  struct Aim {
+    Crossing crossing;
+    ValveWindow window;
+    double q_m = 0.0;        ///< crossing.q_m, brought inside the limits
+    bool reachable = false;  ///< crossing.q_m is inside, but for the placement tolerance
+  };
+  struct Landing {
+    Eigen::Vector2d first_F;
+    Eigen::Vector2d middle_F;
+    Eigen::Vector2d last_F;
+    double q_velocity_mps = 0.0;
+  };
 
-  geometry::AxisModel axis_;
+  // Safety.
+  [[nodiscard]] SafetyCause find_cause(Time now) const;
+  [[nodiscard]] SafetyCause find_running_cause(Time now) const;
+  [[nodiscard]] bool everything_there(Time now) const;
+  void track_following_error(Time now);
+  void make_safe(Time now, SafetyCause cause);
+  void give_up_due_stops(Time now);
+
+  // Route.
+  void run(Time now, Duration period);
+  void approach(Time now, Duration period);
+  /// True when the stop is done with, and the next one's turn comes.
+  bool approach_stop(std::size_t index, Time now, Duration period);
+  [[nodiscard]] std::optional<Aim> aim_at(const PlannedStop& stop) const;
+  [[nodiscard]] bool try_passing(std::size_t index, const Aim& aim, Time now, Duration period);
+  /// True when the stop is sprayed or given up.
+  bool fire_when_due(const PlannedStop& stop, const Aim& aim, bool passing, Time now,
+                     Duration period);
+  void supervise_spray(Time now, Duration period);
+  void close_spray(Time now, SkipReason reason);
+  [[nodiscard]] Landing predict_landing(Time middle) const;
+  [[nodiscard]] bool protects(const Landing& landing) const;
+
+  // Motion.
+  [[nodiscard]] MotionState motion_at(Time time) const;
+  void move_to(double q_m, Time now);
+  /// On to the same target with the axis' full limits.
+  void hurry(Time now);
+  [[nodiscard]] double arrival_s(double q_m, Time now) const;
+
+  void finish(const PlannedStop& stop);
+  [[nodiscard]] bool finished(const PlannedStop& stop) const;
+  void skip(const PlannedStop& stop, SkipReason reason, Time now);
+  [[nodiscard]] bool events_full() const;
+
+  geometry::AxisModel model_;
+  geometry::AxisModel axis_;  ///< model_, shifted by the calibrated offset
   MotionLimits limits_;
   NozzleCalibration calibration_;
   DropletModel droplet_;
   AxisControllerParameters parameters_;
 
   BoundedVector<PlannedStop, kMaxPlanStops> plan_;
+  std::size_t next_stop_ = 0;
+  std::optional<Time> plan_stamp_;
+  std::optional<BaseState> base_;
+  std::optional<AxisReading> reading_;
+  BoundedVector<ProtectedPlant, kMaxProtectedPlants> protected_;
+  bool odometry_valid_ = true;
+  bool protection_valid_ = true;
   bool emergency_stop_ = false;
   bool peer_lost_ = false;
   bool valve_fault_ = false;
   bool reset_requested_ = false;
+
+  ControllerMode mode_ = ControllerMode::kWaiting;
+  SafetyCause cause_ = SafetyCause::kNone;
+  Time cause_time_;
+  std::optional<Time> following_error_since_;
+
+  MotionProfile profile_;
+  Time profile_start_;
   MotionState setpoint_;
+  std::optional<PlannedStop> passing_;  ///< departed towards the stop after it
+  std::optional<Spray> spray_;
+  std::optional<Time> last_close_;
+  std::array<std::int64_t, 256> finished_{};
+  std::size_t finished_count_ = 0;
   NozzleUseMeter meter_;
+  ControllerEvents events_;
 };
 
 }  // namespace furrow::actuation

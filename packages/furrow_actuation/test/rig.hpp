@@ -1,0 +1,176 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "furrow_actuation/axis_controller.hpp"
+#include "furrow_actuation/simulated_axis_driver.hpp"
+
+namespace furrow::actuation::testing {
+
+/// The four axes of the paper's robot.
+inline geometry::AxisModel paper_axis(int index) {
+  geometry::AxisModel axis;
+  axis.name = "axis_" + std::to_string(index);
+  axis.p_BN0 = {0.18 - 0.12 * index, 0.0, 0.6};
+  axis.lower_m = -0.695;
+  axis.upper_m = 0.695;
+  axis.max_velocity_mps = 5.0;
+  axis.max_acceleration_mps2 = 50.0;
+  axis.max_jerk_mps3 = 2000.0;
+  axis.nozzle.height_m = 0.6;
+  axis.nozzle.footprint_radius_m = 0.025;
+  return axis;
+}
+
+/// A spray as it came down: the mean of its droplets' landing points.
+struct Landed {
+  int axis = 0;
+  Time opened;
+  double seconds = 0.0;
+  Eigen::Vector2d p_F = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> droplets_F;
+};
+
+/// Drives, valves and controllers on a robot whose true motion is integrated in small steps. Where
+/// droplets land follows from the history of the nozzles' positions and an integrated fall alone.
+class Rig {
+ public:
+  using Speed = std::function<Twist2(double)>;
+
+  Rig(int axes, const AxisControllerParameters& parameters, const NozzleCalibration& calibration,
+      const SimulatedValveParameters& valve, const SimulatedAxisParameters& drive, Speed speed)
+      : speed_(std::move(speed)), carry_(calibration.carry) {
+    double v = calibration.exit_speed_mps;
+    for (double height = 0.6; height > 0.0; height -= v * 1e-5) {
+      v += 9.80665e-5;
+      fall_s_ += 1e-5;
+    }
+    for (int i = 0; i < axes; ++i) {
+      const geometry::AxisModel axis = paper_axis(i);
+      axes_.push_back(
+          std::make_unique<Axis>(Axis{axis,
+                                      AxisController(axis, calibration, parameters),
+                                      SimulatedAxisDriver(MotionLimits::of(axis), drive),
+                                      SimulatedValve(valve, 7, axis.name),
+                                      {},
+                                      {},
+                                      {},
+                                      {}}));
+    }
+  }
+
+  struct Axis {
+    geometry::AxisModel model;
+    AxisController controller;
+    SimulatedAxisDriver driver;
+    SimulatedValve valve;
+    ControllerOutput output;
+    std::vector<ControllerEvent> events;
+    std::optional<Time> flowing_since;
+    std::deque<Eigen::Vector2d> nozzle_F;  ///< one a cycle, the last one at now_
+  };
+
+  [[nodiscard]] Axis& axis(int i) { return *axes_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] int size() const { return static_cast<int>(axes_.size()); }
+  [[nodiscard]] Time now() const { return now_; }
+  [[nodiscard]] const BaseState& base() const { return base_; }
+  [[nodiscard]] const std::vector<Landed>& landed() const { return landed_; }
+
+  bool send_odometry = true;
+  bool write_driver = true;
+
+  /// One cycle of 2 ms. Odometry comes every fifth cycle.
+  void step() {
+    if (send_odometry && cycle_ % 5 == 0) {
+      for (auto& a : axes_) a->controller.set_odometry(base_);
+    }
+    for (int i = 0; i < size(); ++i) step_axis(i);
+    const int substeps = 20;
+    const double h = kPeriod.to_seconds() / substeps;
+    for (int k = 0; k < substeps; ++k) {
+      base_.twist_B = speed_(base_.stamp.to_seconds());
+      const double heading = base_.X_FB.heading_rad + h / 2.0 * base_.twist_B.yaw_rate_radps;
+      base_.X_FB.x_m += h * base_.twist_B.vx_mps * std::cos(heading);
+      base_.X_FB.y_m += h * base_.twist_B.vx_mps * std::sin(heading);
+      base_.X_FB.heading_rad += h * base_.twist_B.yaw_rate_radps;
+      base_.stamp += Duration::seconds(h);
+    }
+    base_.twist_B = speed_(base_.stamp.to_seconds());
+    ++cycle_;
+    now_ = Time::from_nanoseconds(cycle_ * kPeriod.count_ns());
+    base_.stamp = now_;
+  }
+
+  static constexpr Duration kPeriod = Duration::milliseconds(2);
+
+ private:
+  void step_axis(int i) {
+    Axis& a = axis(i);
+    if (a.driver.read(now_, kPeriod).ok()) a.controller.set_reading(a.driver.reading());
+    const auto p_BN = a.model.nozzle_position_B(a.driver.reading().position_m);
+    a.nozzle_F.push_back(geometry::transform(base_.X_FB, p_BN.head<2>()));
+    if (a.nozzle_F.size() > 200) a.nozzle_F.pop_front();
+    for (const auto& change : a.valve.take_changes(now_ - kPeriod)) {
+      if (change.flowing) {
+        a.flowing_since = change.time;
+      } else if (a.flowing_since) {
+        landed_.push_back(land(i, *a.flowing_since, change.time));
+        a.flowing_since.reset();
+      }
+    }
+    a.output = a.controller.update(now_, kPeriod);
+    for (const auto& event : a.output.events) a.events.push_back(event);
+    (void)a.valve.write(now_, a.output.valve_open).ok();
+    if (write_driver) (void)a.driver.write(now_, kPeriod, a.output.axis).ok();
+  }
+
+  Eigen::Vector2d nozzle_at(const Axis& a, Time time) const {
+    const double back = (now_ - time).to_seconds() / kPeriod.to_seconds();
+    const double place = static_cast<double>(a.nozzle_F.size()) - 1.0 - back;
+    const auto low = static_cast<std::size_t>(std::max(0.0, std::floor(place)));
+    const std::size_t high = std::min(low + 1, a.nozzle_F.size() - 1);
+    const double share = place - static_cast<double>(low);
+    return (1.0 - share) * a.nozzle_F[low] + share * a.nozzle_F[high];
+  }
+
+  Landed land(int i, Time from, Time to) const {
+    const Axis& a = *axes_[static_cast<std::size_t>(i)];
+    Landed out{i, from, (to - from).to_seconds(), Eigen::Vector2d::Zero(), {}};
+    constexpr int kDroplets = 21;
+    for (int k = 0; k < kDroplets; ++k) {
+      const Time t = from + Duration::nanoseconds((to - from).count_ns() * k / (kDroplets - 1));
+      const Duration h = Duration::nanoseconds(500'000);
+      const Eigen::Vector2d velocity_F = (nozzle_at(a, t + h) - nozzle_at(a, t - h)) / 1e-3;
+      out.droplets_F.push_back(nozzle_at(a, t) + carry_ * fall_s_ * velocity_F);
+      out.p_F += out.droplets_F.back() / kDroplets;
+    }
+    return out;
+  }
+
+  Speed speed_;
+  double carry_;
+  double fall_s_ = 0.0;
+  std::vector<std::unique_ptr<Axis>> axes_;
+  BaseState base_;
+  Time now_;
+  std::int64_t cycle_ = 0;
+  std::vector<Landed> landed_;
+};
+
+inline PlannedStop stop_at(std::int64_t id, const Eigen::Vector2d& p_F, Time observed,
+                           Time intended = {}) {
+  PlannedStop stop;
+  stop.stop_id = id;
+  stop.p_F = p_F;
+  stop.targets.push_back(id);
+  stop.observed = observed;
+  stop.intended = intended;
+  return stop;
+}
+
+}  // namespace furrow::actuation::testing
