@@ -26,7 +26,7 @@ class RoutePlanner {
 
 /// By `parameters.planner` and `parameters.assignment`:
 ///   greedy, notsp, permutation, exact  with distance, static, dynamic;
-///   greedy, exact, footprint           with joint; footprint also with static.
+///   greedy, exact, footprint           with joint.
 /// Throws ConfigError for other combinations and values out of range.
 [[nodiscard]] std::unique_ptr<RoutePlanner> make_route_planner(const PlannerParameters& parameters);
 

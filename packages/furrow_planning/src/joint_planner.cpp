@@ -1,0 +1,121 @@
+#include "joint_planner.hpp"
+
+#include <algorithm>
+
+namespace furrow::planning {
+namespace {
+
+bool agree(const Start& a, const Start& b) {
+  return a.lower_y_m == b.lower_y_m && a.upper_y_m == b.upper_y_m && a.transition == b.transition;
+}
+
+}  // namespace
+
+Status JointPlanner::plan(const PlanningProblem& problem, Plan& plan) {
+  if (Status status = prepare(problem, parameters_, 0.0, prepared_, plan); !status) {
+    return status;
+  }
+  drop_protected(problem, parameters_, prepared_, plan);
+  find_classes();
+  chains_.resize(prepared_.starts.size());
+  for (auto& chain : chains_) {
+    chain.clear();
+  }
+  solve_classes();
+  write_chains(problem, prepared_, chains_, plan);
+  plan.weight_bound = plan.weight;
+  if (classes_.size() > 1) {
+    const double bound =
+        static_cast<double>(bound_of_mixed(problem)) / prepared_.scoring.scores_per_weight;
+    plan.weight_bound = std::max(plan.weight, bound);
+  }
+  return {};
+}
+
+void JointPlanner::find_classes() {
+  classes_.clear();
+  for (std::uint32_t a = 0; a < prepared_.starts.size(); ++a) {
+    if (!prepared_.starts[a].usable) {
+      continue;
+    }
+    const auto same = std::find_if(classes_.begin(), classes_.end(), [&](const auto& axes) {
+      return agree(prepared_.starts[axes.front()], prepared_.starts[a]);
+    });
+    if (same == classes_.end()) {
+      classes_.push_back({a});
+    } else {
+      same->push_back(a);
+    }
+  }
+}
+
+void JointPlanner::solve_classes() {
+  taken_.assign(prepared_.nodes.size(), 0);
+  candidate_.resize(chains_.size());
+  const int rounds = classes_.size() > 1 ? kRounds : 1;
+  for (int round = 0; round < rounds; ++round) {
+    bool gained = false;
+    for (const auto& axes : classes_) {
+      std::int64_t before = 0;
+      for (const std::uint32_t a : axes) {
+        for (const std::uint32_t k : chains_[a]) {
+          taken_[k] = 0;
+          before += prepared_.nodes[k].score;
+        }
+      }
+      members_.clear();
+      for (std::uint32_t k = 0; k < prepared_.nodes.size(); ++k) {
+        if (taken_[k] == 0 && prepared_.starts[axes.front()].spans(prepared_.nodes[k].y_m)) {
+          members_.push_back(k);
+        }
+      }
+      const std::int64_t after = flow_.solve(prepared_, members_, axes, candidate_);
+      if (after > before) {
+        gained = true;
+        for (const std::uint32_t a : axes) {
+          chains_[a].assign(candidate_[a].begin(), candidate_[a].end());
+        }
+      }
+      for (const std::uint32_t a : axes) {
+        for (const std::uint32_t k : chains_[a]) {
+          taken_[k] = 1;
+        }
+      }
+    }
+    if (!gained) {
+      return;
+    }
+  }
+}
+
+std::int64_t JointPlanner::bound_of_mixed(const PlanningProblem& problem) {
+  AxisSpec widest = problem.axes[classes_.front().front()];
+  for (const auto& axes : classes_) {
+    const AxisSpec& axis = problem.axes[axes.front()];
+    widest.lower_m = std::min(widest.lower_m, axis.lower_m);
+    widest.upper_m = std::max(widest.upper_m, axis.upper_m);
+    widest.max_velocity_mps = std::max(widest.max_velocity_mps, axis.max_velocity_mps);
+    widest.max_acceleration_mps2 =
+        std::max(widest.max_acceleration_mps2, axis.max_acceleration_mps2);
+  }
+  relaxed_.nodes.assign(prepared_.nodes.begin(), prepared_.nodes.end());
+  relaxed_.starts.assign(prepared_.starts.begin(), prepared_.starts.end());
+  relaxed_.scoring = prepared_.scoring;
+  const Transition quickest(parameters_, prepared_.speed_mps, widest);
+  members_.clear();
+  for (const auto& axes : classes_) {
+    members_.insert(members_.end(), axes.begin(), axes.end());
+  }
+  for (Start& start : relaxed_.starts) {
+    start.lower_y_m = prepared_.robot_y_m + widest.lower_m;
+    start.upper_y_m = prepared_.robot_y_m + widest.upper_m;
+    start.transition = quickest;
+  }
+  std::vector<std::uint32_t> all(relaxed_.nodes.size());
+  for (std::uint32_t k = 0; k < all.size(); ++k) {
+    all[k] = k;
+  }
+  return flow_.solve(relaxed_, all, members_, candidate_);
+}
+
+}  // namespace furrow::planning

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "furrow_planning/route_planner.hpp"
+#include "joint_flow.hpp"
+
+namespace furrow::planning {
+
+/// Plans all axes together. Exact when the axes in service agree in span and limits (offsets and
+/// states may differ). Axes that do not agree are planned class by class, each class exactly on
+/// what the others leave, in rounds until nothing is gained; Plan::weight_bound then comes from
+/// axes that have the widest span and the quickest limits of all, and says how far it may be off.
+class JointPlanner final : public RoutePlanner {
+ public:
+  explicit JointPlanner(const PlannerParameters& parameters) : parameters_(parameters) {}
+  [[nodiscard]] Status plan(const PlanningProblem& problem, Plan& plan) override;
+  [[nodiscard]] std::string_view name() const override { return "exact joint"; }
+
+ private:
+  static constexpr int kRounds = 8;
+  void find_classes();
+  void solve_classes();
+  [[nodiscard]] std::int64_t bound_of_mixed(const PlanningProblem& problem);
+
+  PlannerParameters parameters_;
+  PreparedProblem prepared_;
+  PreparedProblem relaxed_;
+  JointFlow flow_;
+  std::vector<std::vector<std::uint32_t>> classes_;  ///< axes in service that agree
+  std::vector<std::vector<std::uint32_t>> chains_;
+  std::vector<std::vector<std::uint32_t>> candidate_;
+  std::vector<std::uint32_t> members_;
+  std::vector<char> taken_;
+};
+
+}  // namespace furrow::planning
