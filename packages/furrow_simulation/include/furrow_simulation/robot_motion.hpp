@@ -39,10 +39,11 @@ struct RobotState {
   double wheel_speed_mps = 0.0;    ///< what the wheels turn; more than speed_mps when they slip
 };
 
-/// The true motion of the base along the line y = 0. Speed and yaw rate are disturbed by
+/// The true motion of the base along the line y = 0. Wheel speed and yaw rate are disturbed by
 /// Ornstein-Uhlenbeck noise; steering brings the base back to the line, critically damped over the
-/// steering distance L: curvature = -(y / L^2 + 2 sin(heading) / L). Integrated on a fixed grid of
-/// 1 ms from the start, so that the path does not depend on how the caller steps.
+/// steering distance L: curvature = -(y / L^2 + 2 sin(heading) / L), with y held within L, and the
+/// second term turned when driving backwards. Integrated on a fixed grid of 1 ms from the start,
+/// speed linear in between, so that the path does not depend on how the caller steps.
 class RobotMotion {
  public:
   /// Throws ConfigError for a profile whose lists differ in length or whose times descend, and
@@ -57,8 +58,8 @@ class RobotMotion {
 
  private:
   [[nodiscard]] double commanded_speed_mps(double since_start_s) const;
-  void draw_inputs();
-  [[nodiscard]] RobotState moved(const RobotState& from, Duration dt) const;
+  void begin_cell();
+  [[nodiscard]] RobotState within_cell(Duration since_grid) const;
 
   RobotMotionParameters parameters_;
   Random speed_random_;
@@ -66,8 +67,8 @@ class RobotMotion {
   Time start_;
   double speed_noise_mps_ = 0.0;
   double yaw_noise_radps_ = 0.0;
-  RobotState grid_;   ///< the last state on the grid
-  RobotState state_;  ///< what the caller has asked for
+  RobotState grid_;  ///< at the last grid time, with the inputs of the cell that it begins
+  RobotState state_;
 };
 
 }  // namespace furrow::simulation

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_core/random.hpp"
@@ -78,7 +79,7 @@ struct GnssParameters {
   double float_noise_m = 0.0;
   double single_noise_m = 0.0;
   double latency_s = 0.0;
-  double degraded_per_min = 0.0;  ///< falls from fixed to float, then to single
+  double degraded_per_min = 0.0;  ///< the fix is lost: single, then float
   double degraded_mean_s = 5.0;
   double outages_per_min = 0.0;
   double outage_mean_s = 3.0;
@@ -103,15 +104,25 @@ class Gnss {
   [[nodiscard]] std::optional<GnssReading> measure(const RobotState& state);
 
  private:
-  /// A condition that comes and goes: exponential times between its starts and of its length.
-  struct Episode {
-    double per_min;
-    double mean_s;
-    Random random;
-    Time next_start;
-    Time end;
-    bool drawn = false;
-    bool update(Time now);  ///< true while it lasts
+  /// A condition that comes and goes, after exponential times and for exponential times.
+  class Episode {
+   public:
+    Episode(double per_min, double mean_s, std::uint64_t seed, std::string_view stream)
+        : per_min_(per_min), mean_s_(mean_s), random_(seed, stream) {}
+    /// True while it lasts; `began` then tells whether this is another one than at the last call.
+    bool update(Time now);
+    [[nodiscard]] bool began() const { return began_; }
+    [[nodiscard]] bool in_first_half(Time now) const { return now - start_ < end_ - now; }
+
+   private:
+    double per_min_;
+    double mean_s_;
+    Random random_;
+    Time start_;
+    Time end_;
+    bool scheduled_ = false;
+    bool entered_ = false;
+    bool began_ = false;
   };
 
   GnssParameters parameters_;
@@ -119,7 +130,6 @@ class Gnss {
   Episode degraded_;
   Episode outage_;
   Episode jump_;
-  bool was_jumping_ = false;
   Eigen::Vector2d jump_F_m_ = Eigen::Vector2d::Zero();
 };
 
