@@ -149,6 +149,36 @@ TEST(FieldGeoJson, DegreesAgreeWithTheEllipsoid) {
   EXPECT_GT(north.y(), 50.0);
 }
 
+/// Earth-centred coordinates of a point on the WGS84 ellipsoid, from its definition.
+Eigen::Vector3d on_ellipsoid_m(double longitude_rad, double latitude_rad) {
+  const double a_m = 6378137.0;
+  const double b_m = a_m * (1.0 - 1.0 / 298.257223563);
+  // The point whose normal has this latitude: (a2 cos, b2 sin) over the normal's scale.
+  const double c = a_m * a_m * std::cos(latitude_rad);
+  const double s = b_m * b_m * std::sin(latitude_rad);
+  const double scale = std::hypot(a_m * std::cos(latitude_rad), b_m * std::sin(latitude_rad));
+  return {c * std::cos(longitude_rad) / scale, c * std::sin(longitude_rad) / scale, s / scale};
+}
+
+TEST(FieldGeoJson, IsWithinItsPromiseOfTheTrueTangentPlane) {
+  const double rad = 3.14159265358979323846 / 180.0;
+  Random random(9);
+  for (int i = 0; i < 500; ++i) {
+    const GeoOrigin origin{random.uniform(-55.0, 55.0), random.uniform(-180.0, 180.0), 0.0};
+    const double angle = random.uniform(0.0, 360.0 * rad);
+    const Eigen::Vector2d p_m = 300.0 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d lon_lat_deg = to_wgs84(origin, p_m);
+    const double lon = origin.longitude_deg * rad;
+    const double lat = origin.latitude_deg * rad;
+    const Eigen::Vector3d d_m =
+        on_ellipsoid_m(lon_lat_deg.x() * rad, lon_lat_deg.y() * rad) - on_ellipsoid_m(lon, lat);
+    const Eigen::Vector3d east(-std::sin(lon), std::cos(lon), 0.0);
+    const Eigen::Vector3d north(-std::sin(lat) * std::cos(lon), -std::sin(lat) * std::sin(lon),
+                                std::cos(lat));
+    EXPECT_LT((Eigen::Vector2d(east.dot(d_m), north.dot(d_m)) - p_m).norm(), 0.012);
+  }
+}
+
 TEST(FieldGeoJson, ReadsPointsOfOtherPrograms) {
   const std::string text = R"({"type":"FeatureCollection","features":[
     {"type":"Feature","geometry":{"type":"Point","coordinates":[10.0001,0]},

@@ -46,10 +46,10 @@ struct FieldParameters {
 };
 
 /// A field of these parameters. The expected number of weeds is weeds_per_m2 times the area, also
-/// with minimum distances: a weed that stands too near is placed anew. Deterministic in (parameters,
-/// species, seed); crop and weeds draw from streams of their own. Fails with kOutOfRange (a
-/// parameter, or more than kMaxPlants), kNotFound (a species) or kNoSolution (the distances leave
-/// no room).
+/// with minimum distances: a weed that stands too near is placed anew. Deterministic in
+/// (parameters, species, seed); crop and weeds draw from streams of their own. Fails with
+/// kOutOfRange (a parameter, or more than kMaxPlants), kNotFound (a species) or kNoSolution (the
+/// distances leave no room).
 [[nodiscard]] Result<FieldModel> generate_field(const FieldParameters& parameters,
                                                 const SpeciesTable& species, std::uint64_t seed);
 
