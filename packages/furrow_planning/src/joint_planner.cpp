@@ -21,14 +21,18 @@ Status JointPlanner::plan(const PlanningProblem& problem, Plan& plan) {
   for (auto& chain : chains_) {
     chain.clear();
   }
-  solve_classes();
-  write_chains(problem, prepared_, chains_, plan);
-  plan.weight_bound = plan.weight;
-  if (classes_.size() > 1) {
-    const double bound =
-        static_cast<double>(bound_of_mixed(problem)) / prepared_.scoring.scores_per_weight;
-    plan.weight_bound = std::max(plan.weight, bound);
+  if (classes_.size() <= 1) {
+    solve_classes();
+    write_chains(problem, prepared_, chains_, plan);
+    plan.weight_bound = plan.weight;
+    return {};
   }
+  const auto bound = static_cast<double>(solve_mixed(problem));
+  write_chains(problem, prepared_, chains_, plan);
+  // Scores are rounded to the nearest one.
+  plan.weight_bound =
+      std::max(plan.weight, (bound + 0.5 * static_cast<double>(prepared_.nodes.size())) /
+                                prepared_.scoring.scores_per_weight);
   return {};
 }
 
@@ -49,9 +53,32 @@ void JointPlanner::find_classes() {
   }
 }
 
-void JointPlanner::solve_classes() {
+std::int64_t JointPlanner::solve_mixed(const PlanningProblem& problem) {
+  const std::int64_t from_nothing = solve_classes();
+  kept_ = chains_;
+  const std::int64_t bound = solve_relaxed(problem);
+  for (std::size_t a = 0; a < chains_.size(); ++a) {
+    chains_[a].clear();
+    if (prepared_.starts[a].usable) {
+      solver_.solve(prepared_, prepared_.starts[a], candidate_[a], chains_[a]);
+    }
+  }
+  if (solve_classes() < from_nothing) {
+    chains_.swap(kept_);
+  }
+  return bound;
+}
+
+std::int64_t JointPlanner::solve_classes() {
   taken_.assign(prepared_.nodes.size(), 0);
   candidate_.resize(chains_.size());
+  std::int64_t total = 0;
+  for (const auto& chain : chains_) {
+    for (const std::uint32_t k : chain) {
+      taken_[k] = 1;
+      total += prepared_.nodes[k].score;
+    }
+  }
   const int rounds = classes_.size() > 1 ? kRounds : 1;
   for (int round = 0; round < rounds; ++round) {
     bool gained = false;
@@ -72,6 +99,7 @@ void JointPlanner::solve_classes() {
       const std::int64_t after = flow_.solve(prepared_, members_, axes, candidate_);
       if (after > before) {
         gained = true;
+        total += after - before;
         for (const std::uint32_t a : axes) {
           chains_[a].assign(candidate_[a].begin(), candidate_[a].end());
         }
@@ -83,12 +111,13 @@ void JointPlanner::solve_classes() {
       }
     }
     if (!gained) {
-      return;
+      break;
     }
   }
+  return total;
 }
 
-std::int64_t JointPlanner::bound_of_mixed(const PlanningProblem& problem) {
+std::int64_t JointPlanner::solve_relaxed(const PlanningProblem& problem) {
   AxisSpec widest = problem.axes[classes_.front().front()];
   for (const auto& axes : classes_) {
     const AxisSpec& axis = problem.axes[axes.front()];

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "chain_solver.hpp"
 #include "furrow_planning/route_planner.hpp"
 #include "joint_flow.hpp"
 
@@ -12,6 +13,8 @@ namespace furrow::planning {
 /// states may differ). Axes that do not agree are planned class by class, each class exactly on
 /// what the others leave, in rounds until nothing is gained; Plan::weight_bound then comes from
 /// axes that have the widest span and the quickest limits of all, and says how far it may be off.
+/// The rounds start from the routes of that bound, cut to what each axis can do, and from nothing;
+/// the better outcome counts.
 class JointPlanner final : public RoutePlanner {
  public:
   explicit JointPlanner(const PlannerParameters& parameters) : parameters_(parameters) {}
@@ -21,16 +24,21 @@ class JointPlanner final : public RoutePlanner {
  private:
   static constexpr int kRounds = 8;
   void find_classes();
-  void solve_classes();
-  [[nodiscard]] std::int64_t bound_of_mixed(const PlanningProblem& problem);
+  /// Improves chains_ class by class until nothing is gained. Returns their score.
+  std::int64_t solve_classes();
+  /// Writes chains_; returns the bound.
+  [[nodiscard]] std::int64_t solve_mixed(const PlanningProblem& problem);
+  [[nodiscard]] std::int64_t solve_relaxed(const PlanningProblem& problem);
 
   PlannerParameters parameters_;
   PreparedProblem prepared_;
   PreparedProblem relaxed_;
   JointFlow flow_;
+  ChainSolver solver_;
   std::vector<std::vector<std::uint32_t>> classes_;  ///< axes in service that agree
   std::vector<std::vector<std::uint32_t>> chains_;
   std::vector<std::vector<std::uint32_t>> candidate_;
+  std::vector<std::vector<std::uint32_t>> kept_;
   std::vector<std::uint32_t> members_;
   std::vector<char> taken_;
 };
