@@ -32,7 +32,7 @@ struct DdsParameters {
     v.visit({.name = "process_name", .description = "name by which other processes see this one"},
             process_name);
     v.visit({.name = "transports",
-             .description = "\"shm\" (same host), \"udp\", or both; both need a common one"},
+             .description = "\"shm\" (same host), \"udp\", or both; processes need a common one"},
             transports);
     v.visit({.name = "interfaces",
              .description = "IPv4 addresses of this host that UDP may use; empty: all of them"},
@@ -42,7 +42,7 @@ struct DdsParameters {
              .choices = {"multicast", "static_peers", "discovery_server"}},
             discovery);
     v.visit({.name = "peers",
-             .description = "IPv4 addresses, each with an optional \":port\": the hosts to ask "
+             .description = "IPv4 addresses, each with an optional \":port\": the other hosts "
                             "(static_peers), or the servers in the order of their ids "
                             "(discovery_server, port 11811 unless given)"},
             peers);

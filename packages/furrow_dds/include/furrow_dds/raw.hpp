@@ -14,9 +14,10 @@ namespace furrow::dds {
 
 /// One message as it came, its type unknown.
 struct RawMessage {
-  std::vector<std::byte> payload;  ///< the CDR form behind its encapsulation header of four bytes
-  Time source_time;                ///< Unix time at the writer's host
-  Time reception_time;             ///< Unix time at this host
+  std::vector<std::byte>
+      payload;          ///< encapsulation header (4 bytes), CDR form, up to 3 bytes of padding
+  Time source_time;     ///< Unix time at the writer's host
+  Time reception_time;  ///< Unix time at this host
   Guid writer;
 };
 

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "furrow_dds/raw.hpp"
+#include "furrow_msgs/message_type.hpp"
+
+namespace furrow::dds {
+
+/// What stands behind the void pointers that Fast DDS hands to a CdrType.
+class WireData {
+ public:
+  virtual ~WireData() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Bytes written; 0 when it failed.
+  [[nodiscard]] virtual std::size_t serialize(std::span<std::byte> out) const = 0;
+  virtual void deserialize(std::span<const std::byte> in) = 0;
+};
+
+class OutgoingMessage final : public WireData {
+ public:
+  OutgoingMessage(const msgs::MessageType& type, const void* message, std::size_t size)
+      : type_(type), message_(message), size_(size) {}
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  [[nodiscard]] std::size_t serialize(std::span<std::byte> out) const override;
+  void deserialize(std::span<const std::byte>) override {}
+
+ private:
+  const msgs::MessageType& type_;
+  const void* message_;
+  std::size_t size_;
+};
+
+class IncomingMessage final : public WireData {
+ public:
+  explicit IncomingMessage(const msgs::MessageType& type) : type_(type) {}
+  /// Null when nothing came or it was malformed.
+  [[nodiscard]] graph::MessagePtr take() { return std::exchange(message_, nullptr); }
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
+  void deserialize(std::span<const std::byte> in) override;
+
+ private:
+  const msgs::MessageType& type_;
+  graph::MessagePtr message_;
+  std::size_t size_ = 0;
+};
+
+class OutgoingBytes final : public WireData {
+ public:
+  explicit OutgoingBytes(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
+  [[nodiscard]] std::size_t serialize(std::span<std::byte> out) const override;
+  void deserialize(std::span<const std::byte>) override {}
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+class IncomingBytes final : public WireData {
+ public:
+  [[nodiscard]] std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
+  [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
+  [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
+  void deserialize(std::span<const std::byte> in) override { bytes_.assign(in.begin(), in.end()); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// A sample that is let go unread.
+class NoData final : public WireData {
+ public:
+  [[nodiscard]] std::size_t size() const override { return 0; }
+  [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
+  void deserialize(std::span<const std::byte>) override {}
+};
+
+/// A type that Fast DDS knows by its name only: samples are WireData. Typed and raw endpoints of a
+/// topic share it, as a participant takes one implementation for a name.
+class CdrType final : public eprosima::fastdds::dds::TopicDataType {
+ public:
+  explicit CdrType(const std::string& type_name);
+
+  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
+  std::function<uint32_t()> getSerializedSizeProvider(void* data) override;
+  void* createData() override { return static_cast<WireData*>(new NoData); }
+  void deleteData(void* data) override { delete static_cast<WireData*>(data); }
+  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
+  bool is_bounded() const override { return false; }
+  bool is_plain() const override { return false; }
+};
+
+}  // namespace furrow::dds

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "furrow_dds/discovery.hpp"
+
+namespace furrow::dds {
+
+[[nodiscard]] Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);
+
+/// "rt/NAME" and NAME; a name that begins with "//" goes without the prefix.
+[[nodiscard]] std::string wire_name(const std::string& topic);
+[[nodiscard]] std::string topic_name(const std::string& wire);
+
+/// Keeps the picture of the domain. Bounded: what would exceed kMaxEntries is left out.
+class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  static constexpr std::size_t kMaxEntries = 10000;
+
+  void set_own(const ProcessInfo& own);
+  [[nodiscard]] DiscoverySnapshot snapshot() const;
+  [[nodiscard]] std::uint64_t version() const;
+
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+
+ private:
+  struct Endpoint {
+    std::string wire_name;
+    bool writer = false;
+    EndpointInfo info;
+  };
+  template <class ProxyData>
+  void update(const ProxyData& data, bool writer, bool removed);
+
+  mutable std::mutex mutex_;
+  std::uint64_t version_ = 0;
+  Guid own_;
+  std::map<Guid, ProcessInfo> processes_;
+  std::map<Guid, Endpoint> endpoints_;
+};
+
+}  // namespace furrow::dds

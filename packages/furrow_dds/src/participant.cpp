@@ -1,0 +1,149 @@
+#include "participant.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <mutex>
+
+#include "cdr_type.hpp"
+#include "participant_qos.hpp"
+
+namespace furrow::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+// The library writes its warnings to stdout, where the output of programs goes.
+void log_to_stderr() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    fdds::Log::ClearConsumers();
+    auto consumer = std::make_unique<fdds::StdoutErrConsumer>();
+    consumer->stderr_threshold(fdds::Log::Kind::Info);
+    fdds::Log::RegisterConsumer(std::move(consumer));
+  });
+}
+
+}  // namespace
+
+Participant::Participant(const DdsParameters& parameters) : parameters_(parameters) {
+  const fdds::DomainParticipantQos qos = participant_qos(parameters);
+  log_to_stderr();
+  participant_ = fdds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &discovery_,
+      fdds::StatusMask::none());
+  if (participant_ == nullptr) {
+    throw ConfigError("DDS participant refused in domain " + std::to_string(parameters.domain_id) +
+                      ": is there an interface with the given address, and memory in /dev/shm?");
+  }
+  ProcessInfo own;
+  own.guid = to_guid(participant_->guid());
+  own.name = parameters.process_name;
+  const std::string user_data = process_user_data();
+  own.host = user_data_value(user_data, "host");
+  const std::string pid = user_data_value(user_data, "pid");
+  std::from_chars(pid.data(), pid.data() + pid.size(), own.pid);
+  own.own = true;
+  discovery_.set_own(own);
+
+  publisher_ = participant_->create_publisher(fdds::PUBLISHER_QOS_DEFAULT);
+  subscriber_ = participant_->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT);
+  sender_ = std::make_unique<Sender>(static_cast<std::size_t>(parameters.bulk_threshold_kb * 1000));
+  linger_left_ = std::chrono::nanoseconds(Duration::seconds(parameters.linger_s).count_ns());
+}
+
+Participant::~Participant() {
+  sender_.reset();
+  participant_->set_listener(nullptr);
+  participant_->delete_contained_entities();
+  fdds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+Participant::TopicUse::TopicUse(Participant& participant, const std::string& topic,
+                                const std::string& type_name)
+    : participant_(participant) {
+  const std::string name = wire_name(topic);
+  const std::lock_guard lock(participant_.topics_mutex_);
+  if (auto* known = participant_.participant_->lookup_topicdescription(name)) {
+    if (known->get_type_name() != type_name) {
+      throw ConfigError("topic " + topic + " has type " + known->get_type_name() + ", not " +
+                        type_name);
+    }
+    topic_ = static_cast<fdds::Topic*>(known);
+  } else {
+    if (participant_.participant_->find_type(type_name).empty()) {
+      participant_.participant_->register_type(fdds::TypeSupport(new CdrType(type_name)));
+    }
+    topic_ = participant_.participant_->create_topic(name, type_name, fdds::TOPIC_QOS_DEFAULT);
+    if (topic_ == nullptr) {
+      throw ConfigError("topic " + topic + " of type '" + type_name + "' refused by DDS");
+    }
+  }
+  ++participant_.topic_uses_[name];
+}
+
+Participant::TopicUse::~TopicUse() {
+  const std::lock_guard lock(participant_.topics_mutex_);
+  const auto use = participant_.topic_uses_.find(topic_->get_name());
+  if (--use->second == 0) {
+    participant_.topic_uses_.erase(use);
+    participant_.participant_->delete_topic(topic_);
+  }
+}
+
+bool Participant::is_own(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) const {
+  return eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix ==
+         participant_->guid().guidPrefix;
+}
+
+void Participant::set_on_fault(std::function<void(const WireFault&)> callback) {
+  const std::lock_guard lock(fault_mutex_);
+  on_fault_ = std::move(callback);
+}
+
+void Participant::report(WireFaultKind kind, const std::string& topic) {
+  const std::lock_guard lock(fault_mutex_);
+  if (on_fault_) {
+    on_fault_({kind, topic});
+  }
+}
+
+void Participant::add(Endpoint* endpoint) {
+  const std::lock_guard lock(endpoints_mutex_);
+  endpoints_.push_back(endpoint);
+}
+
+void Participant::remove(Endpoint* endpoint) {
+  const std::lock_guard lock(endpoints_mutex_);
+  std::erase(endpoints_, endpoint);
+}
+
+std::vector<EndpointStatus> Participant::status() const {
+  const std::lock_guard lock(endpoints_mutex_);
+  std::vector<EndpointStatus> out;
+  out.reserve(endpoints_.size());
+  for (const Endpoint* endpoint : endpoints_) {
+    out.push_back(endpoint->status());
+  }
+  return out;
+}
+
+bool Participant::flush(std::chrono::steady_clock::time_point deadline) {
+  const std::lock_guard lock(endpoints_mutex_);
+  return std::all_of(endpoints_.begin(), endpoints_.end(),
+                     [&](Endpoint* endpoint) { return endpoint->flush(deadline); });
+}
+
+void Participant::linger(Endpoint& endpoint) {
+  const std::lock_guard lock(linger_mutex_);
+  const auto start = std::chrono::steady_clock::now();
+  [[maybe_unused]] const bool delivered = endpoint.flush(start + linger_left_);
+  linger_left_ -=
+      std::min<std::chrono::nanoseconds>(linger_left_, std::chrono::steady_clock::now() - start);
+}
+
+}  // namespace furrow::dds

@@ -1,0 +1,182 @@
+#include "participant_qos.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <memory>
+
+#include "endpoint_qos.hpp"
+
+namespace furrow::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::RemoteServerAttributes;
+using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+
+namespace {
+
+constexpr std::uint32_t kServerPort = 11811;
+// Processes of one host that static peers are asked for; each has a port of its own.
+constexpr std::uint32_t kMaxProcessesPerHost = 32;
+// 64 kB fragments, and those of several images may wait in a port's queue.
+constexpr std::uint32_t kShmPortQueue = 1024;
+constexpr std::size_t kMaxServers = 256;
+
+bool has(const std::vector<std::string>& list, const char* entry) {
+  return std::find(list.begin(), list.end(), entry) != list.end();
+}
+
+rtps::Locator_t udp_locator(const std::string& address, std::uint32_t default_port) {
+  const std::size_t colon = address.find(':');
+  const std::string host = address.substr(0, colon);
+  std::uint32_t port = default_port;
+  if (colon != std::string::npos) {
+    const char* first = address.data() + colon + 1;
+    const char* last = address.data() + address.size();
+    const auto [end, failure] = std::from_chars(first, last, port);
+    if (failure != std::errc() || end != last || port == 0 || port > 65535) {
+      throw ConfigError("peers: '" + address + "' has no port from 1 to 65535 behind its colon");
+    }
+  }
+  if (!rtps::IPLocator::isIPv4(host)) {
+    throw ConfigError("peers: '" + address + "' is not an IPv4 address");
+  }
+  rtps::Locator_t locator;
+  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, host, port, locator);
+  return locator;
+}
+
+void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos& qos) {
+  qos.transport().use_builtin_transports = false;
+  for (const std::string& name : parameters.transports) {
+    if (name != "shm" && name != "udp") {
+      throw ConfigError("transports: '" + name + "' is neither \"shm\" nor \"udp\"");
+    }
+  }
+  if (has(parameters.transports, "shm")) {
+    auto shm = std::make_shared<SharedMemTransportDescriptor>();
+    shm->segment_size(static_cast<std::uint32_t>(parameters.shm_segment_mb * 1'000'000));
+    shm->port_queue_capacity(kShmPortQueue);
+    qos.transport().user_transports.push_back(shm);
+  }
+  if (has(parameters.transports, "udp")) {
+    auto udp = std::make_shared<UDPv4TransportDescriptor>();
+    const auto buffer_bytes = static_cast<std::uint32_t>(parameters.socket_buffer_kb * 1000);
+    udp->sendBufferSize = buffer_bytes;
+    udp->receiveBufferSize = buffer_bytes;
+    udp->maxInitialPeersRange = kMaxProcessesPerHost;
+    for (const std::string& address : parameters.interfaces) {
+      if (!rtps::IPLocator::isIPv4(address)) {
+        throw ConfigError("interfaces: '" + address + "' is not an IPv4 address");
+      }
+      udp->interfaceWhiteList.push_back(address);
+    }
+    qos.transport().user_transports.push_back(udp);
+  }
+  if (qos.transport().user_transports.empty()) {
+    throw ConfigError("transports: empty");
+  }
+}
+
+void set_discovery(const DdsParameters& parameters, fdds::DomainParticipantQos& qos) {
+  auto& builtin = qos.wire_protocol().builtin;
+  const Duration lease = Duration::seconds(parameters.lease_s);
+  builtin.discovery_config.leaseDuration = to_dds(lease);
+  builtin.discovery_config.leaseDuration_announcementperiod =
+      to_dds(Duration::nanoseconds(lease.count_ns() / 3));
+  builtin.discovery_config.initial_announcements = {10, to_dds(Duration::milliseconds(50))};
+
+  const bool udp = has(parameters.transports, "udp");
+  if (parameters.discovery == "multicast") {
+    if (!parameters.peers.empty()) {
+      throw ConfigError("peers: given, but discovery is \"multicast\"");
+    }
+    return;
+  }
+  if (!udp || parameters.peers.empty()) {
+    throw ConfigError("discovery: \"" + parameters.discovery +
+                      "\" needs peers and \"udp\" among the transports");
+  }
+  if (parameters.discovery == "static_peers") {
+    for (const std::string& peer : parameters.peers) {
+      builtin.initialPeersList.push_back(udp_locator(peer, 0));
+    }
+    // Processes of this host are peers too.
+    if (parameters.interfaces.empty()) {
+      builtin.initialPeersList.push_back(udp_locator("127.0.0.1", 0));
+    }
+    for (const std::string& address : parameters.interfaces) {
+      builtin.initialPeersList.push_back(udp_locator(address, 0));
+    }
+    return;
+  }
+  if (parameters.discovery != "discovery_server") {
+    throw ConfigError("discovery: '" + parameters.discovery + "' is unknown");
+  }
+  if (parameters.peers.size() > kMaxServers) {
+    throw ConfigError("peers: more than 256 discovery servers");
+  }
+  // Also what this process does not read itself, for recorders and tools.
+  builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SUPER_CLIENT;
+  builtin.discovery_config.discoveryServer_client_syncperiod = to_dds(Duration::milliseconds(100));
+  for (std::size_t id = 0; id < parameters.peers.size(); ++id) {
+    RemoteServerAttributes server;
+    server.ReadguidPrefix(eprosima::fastdds::rtps::DEFAULT_ROS2_SERVER_GUIDPREFIX);
+    server.guidPrefix.value[2] = static_cast<std::uint8_t>(id);
+    server.metatrafficUnicastLocatorList.push_back(udp_locator(parameters.peers[id], kServerPort));
+    builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  }
+}
+
+}  // namespace
+
+fdds::DomainParticipantQos participant_qos(const DdsParameters& parameters) {
+  DdsParameters copy = parameters;
+  ParameterLister lister;
+  copy.visit(lister);
+  std::vector<GivenParameter> given;
+  for (const DeclaredParameter& declared : lister.declared()) {
+    given.push_back({declared.info.name, declared.default_value, {}});
+  }
+  check_parameters(lister.declared(), given);
+
+  fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
+  qos.name(parameters.process_name);
+  const std::string user_data = process_user_data();
+  qos.user_data().setValue({user_data.begin(), user_data.end()});
+  // Each sending thread holds one while it sends; none waits for another's.
+  qos.allocation().send_buffers.dynamic = true;
+  set_transports(parameters, qos);
+  set_discovery(parameters, qos);
+  return qos;
+}
+
+std::string process_user_data() {
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) != 0) {
+    host = {"unknown"};
+  }
+  return "furrow=1;host=" + std::string(host.data()) + ";pid=" + std::to_string(getpid()) + ";";
+}
+
+std::string user_data_value(const std::string& user_data, const std::string& key) {
+  const std::string prefix = key + "=";
+  std::size_t begin = 0;
+  while (begin < user_data.size()) {
+    const std::size_t end = std::min(user_data.find(';', begin), user_data.size());
+    if (user_data.compare(begin, prefix.size(), prefix) == 0) {
+      return user_data.substr(begin + prefix.size(), end - begin - prefix.size());
+    }
+    begin = end + 1;
+  }
+  return {};
+}
+
+}  // namespace furrow::dds

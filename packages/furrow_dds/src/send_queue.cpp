@@ -1,0 +1,125 @@
+#include "send_queue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace furrow::dds {
+
+Sender::Sender(std::size_t bulk_threshold_bytes) : bulk_threshold_bytes_(bulk_threshold_bytes) {
+  threads_[kPrompt] = std::thread([this] { run(kPrompt); });
+  threads_[kBulk] = std::thread([this] { run(kBulk); });
+}
+
+Sender::~Sender() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  for (auto& work : work_) {
+    work.notify_all();
+  }
+  for (auto& thread : threads_) {
+    thread.join();
+  }
+}
+
+void Sender::schedule(SendQueue& queue) {
+  queue.scheduled_ = true;
+  ready_[queue.lane_].push_back(&queue);
+  work_[queue.lane_].notify_one();
+}
+
+void Sender::run(Lane lane) {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    work_[lane].wait(lock, [&] { return stop_ || !ready_[lane].empty(); });
+    if (stop_) {
+      return;
+    }
+    SendQueue& queue = *ready_[lane].front();
+    ready_[lane].pop_front();
+    graph::MessagePtr message = queue.pop();
+    queue.sending_ = true;
+    lock.unlock();
+
+    const std::size_t size = queue.sink_.size(message);
+    const bool hand_over = lane == kPrompt && size > bulk_threshold_bytes_;
+    bool sent = false;
+    if (!hand_over) {
+      sent = queue.sink_.send(message, size);
+      message.reset();
+    }
+
+    lock.lock();
+    queue.sending_ = false;
+    if (hand_over) {
+      queue.lane_ = kBulk;
+      queue.held_ = std::move(message);
+    } else if (sent) {
+      ++queue.counters_.messages;
+      queue.counters_.bytes += size;
+    } else {
+      ++queue.counters_.dropped;
+    }
+    if (queue.held_ || queue.count_ > 0) {
+      schedule(queue);
+    } else {
+      queue.scheduled_ = false;
+    }
+    idle_.notify_all();
+  }
+}
+
+SendQueue::SendQueue(Sender& sender, MessageSink& sink, std::size_t depth)
+    : sender_(sender), sink_(sink), ring_(std::max<std::size_t>(1, depth)) {}
+
+SendQueue::~SendQueue() {
+  std::unique_lock lock(sender_.mutex_);
+  sender_.idle_.wait(lock, [&] { return !sending_; });
+  for (auto& ready : sender_.ready_) {
+    std::erase(ready, this);
+  }
+}
+
+void SendQueue::push(graph::MessagePtr message) {
+  graph::MessagePtr oldest;  // freed after the lock: that of an image takes a while
+  const std::lock_guard lock(sender_.mutex_);
+  if (count_ == ring_.size()) {
+    oldest = std::exchange(ring_[first_], nullptr);
+    first_ = (first_ + 1) % ring_.size();
+    --count_;
+    ++counters_.dropped;
+  }
+  ring_[(first_ + count_) % ring_.size()] = std::move(message);
+  ++count_;
+  if (!scheduled_) {
+    sender_.schedule(*this);
+  }
+}
+
+graph::MessagePtr SendQueue::pop() {
+  if (held_) {
+    return std::exchange(held_, nullptr);
+  }
+  graph::MessagePtr message = std::exchange(ring_[first_], nullptr);
+  first_ = (first_ + 1) % ring_.size();
+  --count_;
+  return message;
+}
+
+bool SendQueue::wait_idle(std::chrono::steady_clock::time_point deadline) {
+  std::unique_lock lock(sender_.mutex_);
+  return sender_.idle_.wait_until(lock, deadline, [&] { return !scheduled_; });
+}
+
+graph::WireCounters SendQueue::counters() const {
+  const std::lock_guard lock(sender_.mutex_);
+  return counters_;
+}
+
+void SendQueue::count_dropped() {
+  const std::lock_guard lock(sender_.mutex_);
+  ++counters_.dropped;
+}
+
+}  // namespace furrow::dds

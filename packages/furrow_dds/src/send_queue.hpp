@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "furrow_graph/transport.hpp"
+
+namespace furrow::dds {
+
+/// Where a queue's messages go. Called by one thread at a time.
+class MessageSink {
+ public:
+  virtual ~MessageSink() = default;
+  /// Bytes of the message on the wire.
+  [[nodiscard]] virtual std::size_t size(const graph::MessagePtr& message) = 0;
+  /// May block; false when the message could not be sent.
+  [[nodiscard]] virtual bool send(const graph::MessagePtr& message, std::size_t size) = 0;
+};
+
+class SendQueue;
+
+/// Two threads that send what waits in queues, one message of each queue in turn. A queue starts
+/// with the first thread and stays with the second from its first message above the threshold on;
+/// it is never with both, so that its order holds.
+class Sender {
+ public:
+  explicit Sender(std::size_t bulk_threshold_bytes);
+  /// @pre No queue is left.
+  ~Sender();
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+
+ private:
+  friend class SendQueue;
+  enum Lane : std::size_t { kPrompt, kBulk, kLanes };
+
+  void run(Lane lane);
+  /// @pre mutex_ is held.
+  void schedule(SendQueue& queue);
+
+  const std::size_t bulk_threshold_bytes_;
+  std::mutex mutex_;
+  std::array<std::condition_variable, kLanes> work_;
+  std::condition_variable idle_;
+  std::array<std::deque<SendQueue*>, kLanes> ready_;
+  bool stop_ = false;
+  std::array<std::thread, kLanes> threads_;
+};
+
+/// The messages of one writer that wait; the oldest is dropped when `depth` are waiting.
+class SendQueue {
+ public:
+  SendQueue(Sender& sender, MessageSink& sink, std::size_t depth);
+  /// Drops what still waits and returns when nothing is being sent.
+  ~SendQueue();
+  SendQueue(const SendQueue&) = delete;
+  SendQueue& operator=(const SendQueue&) = delete;
+
+  void push(graph::MessagePtr message);
+  /// False when something still waits or is being sent at `deadline`.
+  [[nodiscard]] bool wait_idle(std::chrono::steady_clock::time_point deadline);
+  [[nodiscard]] graph::WireCounters counters() const;
+  void count_dropped();
+
+ private:
+  friend class Sender;
+  [[nodiscard]] graph::MessagePtr pop();
+
+  Sender& sender_;
+  MessageSink& sink_;
+  // All below are guarded by sender_.mutex_.
+  std::vector<graph::MessagePtr> ring_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  graph::MessagePtr held_;  // handed from the first thread to the second
+  Sender::Lane lane_ = Sender::kPrompt;
+  bool scheduled_ = false;  // in a ready list, or being sent
+  bool sending_ = false;
+  graph::WireCounters counters_;
+};
+
+}  // namespace furrow::dds

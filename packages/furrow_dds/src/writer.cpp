@@ -1,0 +1,112 @@
+#include "writer.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "endpoint_qos.hpp"
+
+namespace furrow::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+Writer::Writer(Participant& participant, const std::string& topic, const std::string& type_name,
+               const msgs::MessageType* type, const msgs::Qos& qos)
+    : participant_(participant),
+      topic_(topic),
+      type_(type),
+      latched_(qos.durability == msgs::Durability::kTransientLocal),
+      reliable_(qos.reliability == msgs::Reliability::kReliable),
+      topic_use_(participant, topic, type_name) {
+  const std::int64_t depth =
+      std::clamp<std::int64_t>(qos.depth, 1, participant.parameters().queue_limit);
+  queue_ = std::make_unique<SendQueue>(participant.sender(), static_cast<MessageSink&>(*this),
+                                       static_cast<std::size_t>(depth));
+  writer_ =
+      participant.publisher().create_datawriter(topic_use_.get(), writer_qos(qos), &listener_);
+  if (writer_ == nullptr) {
+    throw ConfigError("topic " + topic + ": DDS refused a writer with this QoS");
+  }
+  participant_.add(this);
+}
+
+Writer::~Writer() {
+  participant_.remove(this);
+  participant_.linger(*this);
+  queue_.reset();
+  listener_.close();
+  writer_->set_listener(nullptr);
+  participant_.publisher().delete_datawriter(writer_);
+}
+
+void Writer::write(graph::MessagePtr message) {
+  if (message == nullptr) {
+    queue_->count_dropped();
+  } else if (latched_ || has_readers()) {
+    queue_->push(std::move(message));
+  }
+}
+
+std::size_t Writer::size(const graph::MessagePtr& message) {
+  return type_ != nullptr ? type_->serialized_size(message.get())
+                          : static_cast<const std::vector<std::byte>*>(message.get())->size();
+}
+
+bool Writer::send(const graph::MessagePtr& message, std::size_t size) {
+  if (size > std::numeric_limits<std::int32_t>::max()) {
+    return false;
+  }
+  if (type_ != nullptr) {
+    OutgoingMessage data(*type_, message.get(), size);
+    return writer_->write(static_cast<WireData*>(&data));
+  }
+  OutgoingBytes data(*static_cast<const std::vector<std::byte>*>(message.get()));
+  return writer_->write(static_cast<WireData*>(&data));
+}
+
+EndpointStatus Writer::status() const {
+  EndpointStatus status;
+  status.topic = topic_;
+  status.writer = true;
+  status.peers = readers_;
+  status.counters = counters();
+  status.incompatible = incompatible_;
+  return status;
+}
+
+bool Writer::flush(std::chrono::steady_clock::time_point deadline) {
+  if (!queue_->wait_idle(deadline)) {
+    return false;
+  }
+  if (!reliable_ || !has_readers()) {
+    return true;
+  }
+  const auto left = std::max(std::chrono::nanoseconds(0),
+                             std::chrono::nanoseconds(deadline - std::chrono::steady_clock::now()));
+  return writer_->wait_for_acknowledgments(to_dds(Duration::nanoseconds(left.count()))) ==
+         ReturnCode_t::RETCODE_OK;
+}
+
+void Writer::Listener::close() {
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+}
+
+void Writer::Listener::on_publication_matched(fdds::DataWriter*,
+                                              const fdds::PublicationMatchedStatus& status) {
+  const std::lock_guard lock(mutex_);
+  if (!closed_ && !writer_.participant_.is_own(status.last_subscription_handle)) {
+    writer_.readers_ += status.current_count_change;
+  }
+}
+
+void Writer::Listener::on_offered_incompatible_qos(
+    fdds::DataWriter*, const fdds::OfferedIncompatibleQosStatus& status) {
+  const std::lock_guard lock(mutex_);
+  if (!closed_ && status.total_count_change > 0) {
+    writer_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
+    writer_.participant_.report(WireFaultKind::kIncompatible, writer_.topic_);
+  }
+}
+
+}  // namespace furrow::dds

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <mutex>
+
+#include "cdr_type.hpp"
+#include "participant.hpp"
+
+namespace furrow::dds {
+
+/// A writer of messages of `type`, or, where that is null, of std::vector<std::byte>.
+class Writer final : public Endpoint, private MessageSink {
+ public:
+  Writer(Participant& participant, const std::string& topic, const std::string& type_name,
+         const msgs::MessageType* type, const msgs::Qos& qos);
+  ~Writer() override;
+
+  [[nodiscard]] bool has_readers() const { return readers_.load(std::memory_order_relaxed) > 0; }
+  void write(graph::MessagePtr message);
+  void count_dropped() { queue_->count_dropped(); }
+  [[nodiscard]] graph::WireCounters counters() const { return queue_->counters(); }
+
+  [[nodiscard]] EndpointStatus status() const override;
+  [[nodiscard]] bool flush(std::chrono::steady_clock::time_point deadline) override;
+
+ private:
+  class Listener final : public eprosima::fastdds::dds::DataWriterListener {
+   public:
+    explicit Listener(Writer& writer) : writer_(writer) {}
+    void close();
+    void on_publication_matched(
+        eprosima::fastdds::dds::DataWriter*,
+        const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+    void on_offered_incompatible_qos(
+        eprosima::fastdds::dds::DataWriter*,
+        const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override;
+
+   private:
+    Writer& writer_;
+    std::mutex mutex_;
+    bool closed_ = false;
+  };
+
+  [[nodiscard]] std::size_t size(const graph::MessagePtr& message) override;
+  [[nodiscard]] bool send(const graph::MessagePtr& message, std::size_t size) override;
+
+  Participant& participant_;
+  const std::string topic_;
+  const msgs::MessageType* type_;
+  const bool latched_;
+  const bool reliable_;
+  std::atomic<int> readers_{0};
+  std::atomic<std::uint64_t> incompatible_{0};
+  Participant::TopicUse topic_use_;
+  Listener listener_{*this};
+  eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
+  std::unique_ptr<SendQueue> queue_;
+};
+
+}  // namespace furrow::dds
