@@ -36,8 +36,9 @@ std::vector<double> ticks(double low, double high, int count) {
   if (!std::isfinite(step) || !(step > 0.0)) return {};
   const double first = std::floor(low / step + 1e-9);
   const double last = std::ceil(high / step - 1e-9);
+  const int steps = static_cast<int>(std::min(last - first, 1000.0));
   std::vector<double> values;
-  for (double i = first; i <= last && values.size() < 1000; ++i) values.push_back(i * step);
+  for (int i = 0; i <= steps; ++i) values.push_back((first + i) * step);
   return values;
 }
 
@@ -52,7 +53,8 @@ std::vector<double> Scale::tick_values(int count) const {
   if (!log) return ticks(low, high, count);
   std::vector<double> values;
   const bool wide = high / low > 1e3;
-  for (double power = std::floor(std::log10(low)); power <= std::log10(high); ++power) {
+  const int last = static_cast<int>(std::floor(std::log10(high)));
+  for (int power = static_cast<int>(std::floor(std::log10(low))); power <= last; ++power) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double value = factor * std::pow(10.0, power);
       if (wide && factor != 1.0) continue;

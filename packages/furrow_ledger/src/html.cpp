@@ -39,7 +39,8 @@ thead th{color:var(--muted);font-weight:500;font-size:12.5px;white-space:nowrap}
 tbody tr:last-child td{border-bottom:0}
 tbody tr:hover{background:#f8f9f6}
 .num{text-align:right}
-.scroll + .scroll{margin-top:24px}
+.scroll + .scroll,.row + .scroll,figure + .scroll,figure + .row,.row + figure{margin-top:26px}
+th:first-child,td:first-child{padding-left:4px}
 .facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(330px,100%),1fr));gap:0 34px;
 margin:0;font-size:14px}
 .facts div{display:flex;justify-content:space-between;gap:18px;padding:7px 0;

@@ -46,13 +46,14 @@ void draw_strip_ground(Markup& svg, const Layout& layout, int strip, const Ledge
               "7 5");
   }
   const double tick_m = ticks(0.0, layout.strip_m, 10).at(1);
-  for (double x_m = std::ceil(from_m / tick_m - 1e-9) * tick_m; x_m <= to_m + 1e-9; x_m += tick_m) {
-    const double x = layout.x_px(strip, x_m);
+  const auto first_tick = static_cast<int>(std::ceil(from_m / tick_m - 1e-9));
+  const auto last_tick = static_cast<int>(std::floor(to_m / tick_m + 1e-9));
+  for (int tick = first_tick; tick <= last_tick; ++tick) {
+    const double x = layout.x_px(strip, tick * tick_m);
     draw_line(svg, x, top + height, x, top + height + 4, palette::kMuted);
-    const double nearest = std::round(x_m / tick_m);
-    if (std::fmod(nearest, 2.0) == 0.0 || layout.strip_m / tick_m <= 6) {
-      draw_text(svg, x, top + height + 16, number(x_m, 3) + " m", "middle", palette::kMuted, 10);
-    }
+    if (tick % 2 != 0 && layout.strip_m / tick_m > 6) continue;
+    draw_text(svg, x, top + height + 16, number(tick * tick_m, 3) + " m", "middle", palette::kMuted,
+              10);
   }
   for (const double y_m : {-0.5, 0.0, 0.5}) {
     if (y_m < layout.y_low_m || y_m > layout.y_high_m) continue;

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace furrow::ledger {
@@ -40,7 +40,9 @@ class PointGrid {
     std::int64_t x;
     std::int64_t y;
     std::size_t index;
-    auto operator<=>(const Entry&) const = default;
+    bool operator<(const Entry& other) const {
+      return std::tie(x, y, index) < std::tie(other.x, other.y, other.index);
+    }
   };
   [[nodiscard]] std::int64_t cell(double v_m) const {
     return static_cast<std::int64_t>(std::floor(v_m / cell_m_));
