@@ -1,0 +1,156 @@
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_components/image_conversions.hpp"
+#include "furrow_geometry/camera.hpp"
+#include "furrow_graph/registry.hpp"
+#include "furrow_vision/growth_stage.hpp"
+#include "furrow_vision/index_detector.hpp"
+
+namespace furrow::components {
+namespace {
+
+namespace topics = msgs::topics;
+
+struct Parameters {
+  std::string detector = "index";
+  double ground_distance_m = 1.0;
+  double min_score = 0.3;
+  vision::IndexDetectorParameters index;
+  vision::GrowthStageParameters growth;
+
+  void visit(ParameterVisitor& v) {
+    v.visit({.name = "detector",
+             .description = "index: vegetation index and row position, without learning",
+             .choices = {"index"}},
+            detector);
+    v.visit({.name = "ground_distance_m",
+             .unit = "m",
+             .description = "camera to ground, where the depth image says nothing",
+             .min = 0.05,
+             .max = 20.0},
+            ground_distance_m);
+    v.visit({.name = "min_score",
+             .description = "instances below are left out",
+             .min = 0.0,
+             .max = 1.0},
+            min_score);
+    index.visit(v);
+    PrefixedVisitor growth_visitor(v, "stage_");
+    growth.visit(growth_visitor);
+  }
+};
+
+/// Finds the plants of each image.
+class Perception final : public graph::Component {
+ public:
+  static void describe(graph::Description& d) {
+    d.doc("Plants of each image: class, mask, stem, area.")
+        .parameters<Parameters>()
+        .input<topics::CameraImage>()
+        .input<topics::CameraDepth>(graph::Need::kOptional)
+        .input<topics::CameraInfo>()
+        .output<topics::Instances>();
+  }
+
+  explicit Perception(graph::Context& context)
+      : context_(context),
+        parameters_(context.parameters<Parameters>()),
+        detector_(std::make_unique<vision::IndexDetector>(parameters_.index)),
+        growth_(parameters_.growth),
+        out_(context.output<topics::Instances>()) {
+    context.input<topics::CameraInfo>([this](const auto& info) { calibrate(*info); });
+    context.input<topics::CameraDepth>([this](const auto& depth) {
+      depth_ = depth;
+      detect_when_complete();
+    });
+    context.input<topics::CameraImage>([this](const auto& image) {
+      if (image_ != nullptr) context_.count("images_without_depth");
+      image_ = image;
+      detect_when_complete();
+    });
+  }
+
+ private:
+  void calibrate(const sensor_msgs::msg::CameraInfo& info) {
+    try {
+      camera_.emplace(from_msg(info));
+    } catch (const ConfigError& error) {
+      context_.health(graph::HealthLevel::kError, error.what());
+    }
+  }
+
+  // Image and depth of one exposure carry the same stamp and come in either order.
+  void detect_when_complete() {
+    if (image_ == nullptr || depth_ == nullptr) return;
+    const auto& wanted = image_->header().stamp();
+    if (!(depth_->header().stamp() == wanted)) return;
+    const auto image = std::exchange(image_, nullptr);
+    const auto depth = std::exchange(depth_, nullptr);
+    if (!camera_) {
+      context_.count("images_before_camera_info");
+      return;
+    }
+    if (const Status done = detect(*image, *depth); !done.ok()) {
+      context_.count("bad_images");
+      context_.health(graph::HealthLevel::kWarn, done.error().message);
+    }
+  }
+
+  Status detect(const sensor_msgs::msg::Image& image, const sensor_msgs::msg::Image& depth) {
+    const auto bgr = bgr_of(image);
+    if (!bgr.ok()) return bgr.error();
+    const auto depth_m = depth_m_of(depth);
+    if (!depth_m.ok()) return depth_m.error();
+    const auto found = detector_->detect({.bgr = *bgr,
+                                          .depth_m = *depth_m,
+                                          .camera = *camera_,
+                                          .ground_distance_m = parameters_.ground_distance_m});
+    if (!found.ok()) return found.error();
+    furrow_msgs::msg::PlantInstances message;
+    message.header(image.header());
+    for (const vision::Instance& instance : *found) {
+      if (instance.score >= parameters_.min_score) message.instances().push_back(to_msg(instance));
+    }
+    context_.count("instances", static_cast<std::int64_t>(message.instances().size()));
+    context_.health(graph::HealthLevel::kOk, "");
+    out_.publish(std::move(message));
+    return {};
+  }
+
+  [[nodiscard]] furrow_msgs::msg::PlantInstance to_msg(const vision::Instance& instance) const {
+    furrow_msgs::msg::PlantInstance message;
+    message.score(static_cast<float>(instance.score));
+    message.crop_probability(static_cast<float>(instance.crop_probability));
+    message.box().x_offset(static_cast<std::uint32_t>(instance.box_px.x));
+    message.box().y_offset(static_cast<std::uint32_t>(instance.box_px.y));
+    message.box().width(static_cast<std::uint32_t>(instance.box_px.width));
+    message.box().height(static_cast<std::uint32_t>(instance.box_px.height));
+    message.mask_runs(mask_runs(instance.mask));
+    message.stem_u_px(instance.stem_px.x());
+    message.stem_v_px(instance.stem_px.y());
+    message.stem(to_point(camera_->unproject(instance.stem_px, instance.stem_depth_m)));
+    message.radius_m(instance.radius_m);
+    message.area_mm2(instance.area_mm2);
+    message.leaves(static_cast<std::uint8_t>(vision::leaf_count(growth_.stage(instance.area_mm2))));
+    return message;
+  }
+
+  graph::Context& context_;
+  Parameters parameters_;
+  std::unique_ptr<vision::Detector> detector_;
+  vision::GrowthStageEstimator growth_;
+  graph::Output<topics::Instances> out_;
+  std::optional<geometry::PinholeCamera> camera_;
+  std::shared_ptr<const sensor_msgs::msg::Image> image_;
+  std::shared_ptr<const sensor_msgs::msg::Image> depth_;
+};
+
+}  // namespace
+}  // namespace furrow::components
+
+extern "C" void furrow_register(furrow::graph::Registry& registry) {
+  registry.add<furrow::components::Perception>("perception");
+}

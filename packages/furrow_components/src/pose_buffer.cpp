@@ -1,0 +1,47 @@
+#include "furrow_components/pose_buffer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow::components {
+
+Status PoseBuffer::add(const BaseOdometry& odometry) {
+  const bool finite = std::isfinite(odometry.X_FB.x_m) && std::isfinite(odometry.X_FB.y_m) &&
+                      std::isfinite(odometry.X_FB.heading_rad) &&
+                      std::isfinite(odometry.speed_mps) && std::isfinite(odometry.yaw_rate_radps);
+  if (!finite) return Error{ErrorCode::kInvalidArgument, "odometry is not finite"};
+  if (!poses_.empty() && odometry.stamp <= poses_.back().stamp) {
+    return Error{ErrorCode::kStale, "odometry goes back in time"};
+  }
+  poses_.push_back(odometry);
+  while (poses_.front().stamp + memory_ < odometry.stamp) poses_.pop_front();
+  return {};
+}
+
+Result<BaseOdometry> PoseBuffer::at(Time stamp, Duration ahead) const {
+  if (poses_.empty()) return Error{ErrorCode::kUnavailable, "no odometry yet"};
+  const BaseOdometry& newest = poses_.back();
+  if (stamp > newest.stamp) {
+    if (stamp > newest.stamp + ahead) return Error{ErrorCode::kStale, "odometry is too old"};
+    const double dt_s = (stamp - newest.stamp).to_seconds();
+    const double turn_rad = newest.yaw_rate_radps * dt_s;
+    BaseOdometry moved = newest;
+    moved.stamp = stamp;
+    // Half the turn gives the direction of the chord.
+    moved.X_FB = geometry::compose(newest.X_FB,
+                                   {newest.speed_mps * dt_s * std::cos(0.5 * turn_rad),
+                                    newest.speed_mps * dt_s * std::sin(0.5 * turn_rad), turn_rad});
+    return moved;
+  }
+  const auto after = std::ranges::lower_bound(poses_, stamp, {}, &BaseOdometry::stamp);
+  if (after->stamp == stamp) return *after;
+  if (after == poses_.begin()) return Error{ErrorCode::kStale, "older than the odometry kept"};
+  const BaseOdometry& b = *after;
+  const BaseOdometry& a = *std::prev(after);
+  const double fraction = (stamp - a.stamp).to_seconds() / (b.stamp - a.stamp).to_seconds();
+  return BaseOdometry{stamp, geometry::interpolate(a.X_FB, b.X_FB, fraction),
+                      a.speed_mps + fraction * (b.speed_mps - a.speed_mps),
+                      a.yaw_rate_radps + fraction * (b.yaw_rate_radps - a.yaw_rate_radps)};
+}
+
+}  // namespace furrow::components

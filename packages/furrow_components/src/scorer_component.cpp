@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_components/pose_buffer.hpp"
+#include "furrow_geometry/tool_model.hpp"
+#include "furrow_graph/registry.hpp"
+#include "furrow_graph/stamp.hpp"
+
+namespace furrow::components {
+namespace {
+
+namespace topics = msgs::topics;
+
+struct Parameters {
+  std::string tool_file;
+  double path_step_m = 0.02;
+
+  void visit(ParameterVisitor& v) {
+    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
+    v.visit({.name = "path_step_m",
+             .unit = "m",
+             .description = "distance between the points of a drawn path",
+             .min = 0.001,
+             .max = 1.0},
+            path_step_m);
+  }
+};
+
+/// Gathers what the ledger of a run is made of, and hands it out when the run is finished.
+class Scorer final : public graph::Component {
+ public:
+  static void describe(graph::Description& d) {
+    d.doc("Gathers plants, decisions, sprays and paths; publishes the record at the end.")
+        .parameters<Parameters>()
+        .input<topics::TrueField>(graph::Need::kOptional)
+        .input<topics::TrueSpray>(graph::Need::kOptional)
+        .input<topics::RobotOdometry>()
+        .input<topics::Tracks>()
+        .input<topics::Plan>()
+        .input<topics::AxisEvent>()
+        .input<topics::AxisState>()
+        .input<topics::RunStatus>()
+        .output<topics::RunRecord>();
+  }
+
+  explicit Scorer(graph::Context& context)
+      : context_(context),
+        parameters_(context.parameters<Parameters>()),
+        tool_(geometry::load_tool_model(parameters_.tool_file)),
+        out_(context.output<topics::RunRecord>()) {
+    for (const geometry::AxisModel& axis : tool_.axes) {
+      record_.paths().emplace_back().axis(axis.name);
+    }
+    context.input<topics::TrueField>([this](const auto& field) { record_.field(*field); });
+    context.input<topics::TrueSpray>([this](const auto& spray) {
+      if (bounded(record_.sprays())) record_.sprays().push_back(*spray);
+    });
+    context.input<topics::RobotOdometry>(
+        [this](const auto& message) { drive(from_msg(*message)); });
+    context.input<topics::Tracks>([this](const auto& message) {
+      for (const auto& track : message->tracks()) tracks_[track.id()] = track;
+    });
+    context.input<topics::Plan>([this](const auto& plan) {
+      for (const auto& decision : plan->decisions()) decisions_[decision.track_id()] = decision;
+    });
+    context.input<topics::AxisEvent>([this](const auto& event) {
+      if (bounded(record_.events())) record_.events().push_back(*event);
+    });
+    context.input<topics::AxisState>([this](const auto& state) { move(*state); });
+    context.input<topics::RunStatus>([this](const auto& status) {
+      if (status->finished()) finish(*status);
+    });
+  }
+
+ private:
+  // Far above any run; a flood of messages must not fill the memory.
+  static constexpr std::size_t kMaxEntries = 2'000'000;
+
+  template <class T>
+  bool bounded(const std::vector<T>& list) {
+    if (list.size() < kMaxEntries) return true;
+    context_.count("entries_beyond_the_limit");
+    return false;
+  }
+
+  void drive(const BaseOdometry& base) {
+    if (!first_) first_ = base;
+    if (!poses_.add(base).ok()) context_.count("bad_odometry");
+  }
+
+  void move(const furrow_msgs::msg::AxisState& state) {
+    const auto axis = std::ranges::find(tool_.axes, state.axis(), &geometry::AxisModel::name);
+    if (axis == tool_.axes.end() || poses_.empty()) return;
+    auto& path = record_.paths()[static_cast<std::size_t>(axis - tool_.axes.begin())];
+    path.travel_m(state.travel_m());
+    const Time stamp = graph::from_msg(state.header().stamp());
+    const auto base = poses_.at(stamp, Duration::seconds(0.1));
+    if (!base.ok()) return;
+    const Eigen::Vector2d p_F =
+        geometry::transform(base->X_FB, axis->nozzle_position_B(state.position_m()).head<2>());
+    const bool far =
+        path.points().empty() ||
+        (from_point(path.points().back()).head<2>() - p_F).norm() >= parameters_.path_step_m;
+    if (far && bounded(path.points())) path.points().push_back(to_point(p_F));
+  }
+
+  void finish(const furrow_msgs::msg::RunStatus& status) {
+    record_.header(status.header());
+    record_.distance_m(status.distance_m());
+    const Time end = graph::from_msg(status.header().stamp());
+    const double duration_s = first_ ? (end - first_->stamp).to_seconds() : 0.0;
+    record_.duration_s(duration_s);
+    record_.mean_speed_mps(duration_s > 0.0 ? status.distance_m() / duration_s : 0.0);
+    for (const auto& [id, track] : tracks_) record_.tracks().push_back(track);
+    for (const auto& [id, decision] : decisions_) record_.decisions().push_back(decision);
+    out_.publish(record_);
+  }
+
+  graph::Context& context_;
+  Parameters parameters_;
+  geometry::ToolModel tool_;
+  graph::Output<topics::RunRecord> out_;
+  furrow_msgs::msg::RunRecord record_;
+  std::map<std::int64_t, furrow_msgs::msg::Track> tracks_;
+  std::map<std::int64_t, furrow_msgs::msg::Decision> decisions_;
+  PoseBuffer poses_{Duration::seconds(2.0)};
+  std::optional<BaseOdometry> first_;
+};
+
+}  // namespace
+}  // namespace furrow::components
+
+extern "C" void furrow_register(furrow::graph::Registry& registry) {
+  registry.add<furrow::components::Scorer>("scorer");
+}

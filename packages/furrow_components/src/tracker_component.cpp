@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_components/pose_buffer.hpp"
+#include "furrow_geometry/tool_model.hpp"
+#include "furrow_graph/registry.hpp"
+#include "furrow_graph/stamp.hpp"
+#include "furrow_tracking/reprojection.hpp"
+#include "furrow_tracking/tracker.hpp"
+
+namespace furrow::components {
+namespace {
+
+namespace topics = msgs::topics;
+
+struct Parameters {
+  std::string tool_file;
+  double pixel_noise_px = 1.5;
+  double depth_noise_m = 0.005;
+  tracking::TrackerParameters tracker;
+
+  void visit(ParameterVisitor& v) {
+    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
+    v.visit({.name = "pixel_noise_px",
+             .unit = "px",
+             .description = "standard deviation of a stem's pixel",
+             .min = 0.01,
+             .max = 100.0},
+            pixel_noise_px);
+    v.visit({.name = "depth_noise_m",
+             .unit = "m",
+             .description = "standard deviation of a depth",
+             .min = 1e-4,
+             .max = 1.0},
+            depth_noise_m);
+    tracker.visit(v);
+  }
+};
+
+const geometry::CameraModel& first_camera(const geometry::ToolModel& tool) {
+  if (tool.cameras.empty()) throw ConfigError("the tool has no camera");
+  return tool.cameras.front();
+}
+
+/// Keeps the plants of the images in the field frame.
+class TrackerComponent final : public graph::Component {
+ public:
+  static void describe(graph::Description& d) {
+    d.doc("Plants over many images: positions refined, class fused, confirmed or dropped.")
+        .parameters<Parameters>()
+        .input<topics::RobotOdometry>()
+        .input<topics::Instances>()
+        .output<topics::Tracks>();
+  }
+
+  explicit TrackerComponent(graph::Context& context)
+      : context_(context),
+        parameters_(context.parameters<Parameters>()),
+        tool_(geometry::load_tool_model(parameters_.tool_file)),
+        camera_model_(first_camera(tool_)),
+        camera_(camera_model_.intrinsics),
+        tracker_(parameters_.tracker),
+        out_(context.output<topics::Tracks>()) {
+    context.input<topics::RobotOdometry>([this](const auto& message) {
+      if (!poses_.add(from_msg(*message)).ok()) context_.count("bad_odometry");
+      work_off();
+    });
+    context.input<topics::Instances>([this](const auto& message) {
+      waiting_.push_back(message);
+      if (waiting_.size() > kMaxWaiting) {
+        waiting_.pop_front();
+        context_.count("images_without_pose");
+      }
+      work_off();
+    });
+  }
+
+ private:
+  static constexpr std::size_t kMaxWaiting = 8;
+
+  // An image waits until the pose at its stamp is known.
+  void work_off() {
+    while (!waiting_.empty() && !poses_.empty()) {
+      const Time stamp = graph::from_msg(waiting_.front()->header().stamp());
+      if (stamp > poses_.newest().stamp) return;
+      const auto message = waiting_.front();
+      waiting_.pop_front();
+      const auto pose = poses_.at(stamp);
+      if (!pose.ok()) {
+        context_.count("images_without_pose");
+        context_.health(graph::HealthLevel::kWarn, pose.error().message);
+        continue;
+      }
+      update(*message, *pose);
+    }
+  }
+
+  void update(const furrow_msgs::msg::PlantInstances& message, const BaseOdometry& pose) {
+    const Eigen::Isometry3d X_FC = geometry::to_isometry(pose.X_FB) * camera_model_.X_BC;
+    tracking::View view{.stamp = pose.stamp, .X_FB = pose.X_FB};
+    if (auto visible = tracking::visible_ground(camera_, X_FC); visible.ok()) {
+      view.visible = std::move(visible).value();
+    }
+    std::vector<tracking::Observation> observations;
+    for (const auto& instance : message.instances()) {
+      if (auto seen = observe(instance, X_FC); seen.ok()) {
+        observations.push_back(std::move(seen).value());
+      } else {
+        context_.count("bad_instances");
+      }
+    }
+    const tracking::UpdateSummary summary = tracker_.update(view, observations);
+    context_.count("matched", summary.matched);
+    context_.count("born", summary.born);
+    context_.count("confirmed", summary.confirmed);
+    context_.count("dropped", summary.dropped);
+    if (!summary.ok()) context_.count("bad_views");
+    context_.health(summary.ok() ? graph::HealthLevel::kOk : graph::HealthLevel::kWarn,
+                    summary.ok() ? "" : "a view or an observation was not valid");
+    publish(pose.stamp);
+  }
+
+  [[nodiscard]] Result<tracking::Observation> observe(
+      const furrow_msgs::msg::PlantInstance& instance, const Eigen::Isometry3d& X_FC) {
+    const Eigen::Vector2d pixel(instance.stem_u_px(), instance.stem_v_px());
+    const auto point =
+        tracking::reproject_point(camera_, X_FC, pixel, instance.stem().z(),
+                                  {parameters_.pixel_noise_px, parameters_.depth_noise_m});
+    if (!point.ok()) return point.error();
+    tracking::Observation observation;
+    observation.p_F_m = point->p_F_m.head<2>();
+    observation.covariance_F_m2 = point->covariance_F_m2;
+    observation.radius_m = instance.radius_m();
+    observation.area_mm2 = instance.area_mm2();
+    observation.score = instance.score();
+    const double crop = instance.crop_probability();
+    observation.class_probability = {crop, 1.0 - crop};
+    const auto& box = instance.box();
+    const auto& size = camera_.intrinsics();
+    observation.truncated =
+        box.x_offset() == 0 || box.y_offset() == 0 ||
+        box.x_offset() + box.width() >= static_cast<std::uint32_t>(size.width_px) ||
+        box.y_offset() + box.height() >= static_cast<std::uint32_t>(size.height_px);
+    if (!instance.species().empty()) vote(instance.species(), observation);
+    return observation;
+  }
+
+  void vote(const std::string& species, tracking::Observation& observation) {
+    auto name = std::ranges::find(species_names_, species);
+    if (name == species_names_.end()) {
+      if (species_names_.size() == kMaxSpecies) {
+        context_.count("species_beyond_the_limit");
+        return;
+      }
+      name = species_names_.insert(species_names_.end(), species);
+    }
+    observation.species_probability.assign(kMaxSpecies, 0.0F);
+    observation.species_probability[static_cast<std::size_t>(name - species_names_.begin())] = 1.0F;
+  }
+
+  void publish(Time stamp) const {
+    furrow_msgs::msg::Tracks message;
+    message.header(header(stamp, kFieldFrame));
+    for (const tracking::Track& track : tracker_.tracks()) {
+      message.tracks().push_back(to_msg(track));
+    }
+    // Those that just ended are told once more, so that nobody waits for them.
+    for (const tracking::Track& track : tracker_.ended()) {
+      message.tracks().push_back(to_msg(track));
+    }
+    out_.publish(std::move(message));
+  }
+
+  [[nodiscard]] furrow_msgs::msg::Track to_msg(const tracking::Track& track) const {
+    furrow_msgs::msg::Track message;
+    message.id(static_cast<std::int64_t>(track.id));
+    message.state(static_cast<std::uint8_t>(track.state));
+    message.confirmed(track.confirmed);
+    message.position(to_point(track.p_F_m));
+    message.covariance_xx_m2(track.covariance_F_m2(0, 0));
+    message.covariance_xy_m2(track.covariance_F_m2(0, 1));
+    message.covariance_yy_m2(track.covariance_F_m2(1, 1));
+    message.radius_m(track.radius_m);
+    message.area_mm2(track.area_mm2);
+    message.crop_probability(track.class_probability[0]);
+    if (const int species = track.species(); species >= 0) {
+      message.species(species_names_[static_cast<std::size_t>(species)]);
+    }
+    message.views(static_cast<std::uint32_t>(track.views));
+    message.first_seen(graph::to_msg(track.first_seen));
+    message.last_seen(graph::to_msg(track.last_seen));
+    return message;
+  }
+
+  static constexpr std::size_t kMaxSpecies = 32;
+
+  graph::Context& context_;
+  Parameters parameters_;
+  geometry::ToolModel tool_;
+  const geometry::CameraModel& camera_model_;
+  geometry::PinholeCamera camera_;
+  tracking::Tracker tracker_;
+  graph::Output<topics::Tracks> out_;
+  PoseBuffer poses_{Duration::seconds(5.0)};
+  std::deque<std::shared_ptr<const furrow_msgs::msg::PlantInstances>> waiting_;
+  std::vector<std::string> species_names_;
+};
+
+}  // namespace
+}  // namespace furrow::components
+
+extern "C" void furrow_register(furrow::graph::Registry& registry) {
+  registry.add<furrow::components::TrackerComponent>("tracker");
+}
