@@ -185,11 +185,7 @@ ControllerOutput AxisController::update(Time now, Duration period) {
   if (cause != SafetyCause::kNone && mode_ != ControllerMode::kSafe) make_safe(now, cause);
   if (mode_ == ControllerMode::kWaiting && everything_there(now)) {
     mode_ = ControllerMode::kRunning;
-    const double q_m = std::clamp(reading_->position_m + reading_->following_error_m,
-                                  limits_.lower_m, limits_.upper_m);
-    profile_ = MotionProfile::standing(q_m);
-    profile_start_ = now;
-    setpoint_ = motion_at(now);
+    adopt_drive_setpoint(now);
   }
   if (mode_ == ControllerMode::kRunning) {
     run(now, period);
@@ -201,6 +197,9 @@ ControllerOutput AxisController::update(Time now, Duration period) {
   output.valve_open = spray_ && spray_->open && !spray_->dry_run;
   meter_.command(now, output.valve_open);
   const bool stopping = mode_ == ControllerMode::kSafe && reading_ && operational(reading_->state);
+  if (stopping && (now - profile_start_).to_seconds() >= profile_.duration_s()) {
+    adopt_drive_setpoint(now);
+  }
   if (mode_ == ControllerMode::kRunning || stopping) {
     const MotionState end = motion_at(now + period);
     output.axis = {AxisCommandMode::kCyclic, end.position_m, end.velocity_mps};
@@ -213,6 +212,14 @@ ControllerOutput AxisController::update(Time now, Duration period) {
   output.cause_time = cause_time_;
   output.events = events_;
   return output;
+}
+
+void AxisController::adopt_drive_setpoint(Time now) {
+  const double q_m = reading_->position_m + reading_->following_error_m;
+  if (!std::isfinite(q_m)) return;
+  profile_ = MotionProfile::standing(std::clamp(q_m, limits_.lower_m, limits_.upper_m));
+  profile_start_ = now;
+  setpoint_ = motion_at(now);
 }
 
 MotionState AxisController::motion_at(Time time) const {

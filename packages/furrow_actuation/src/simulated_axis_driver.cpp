@@ -11,6 +11,16 @@ namespace {
 constexpr double kPositionTolerance_m = 1e-6;
 constexpr double kInPosition_m = 1e-4;
 
+/// As hard as the acceleration limit allows, without regard to the jerk: a drive's quick stop.
+MotionProfile quick_stop(const MotionLimits& limits, const MotionState& from) {
+  const double stop_s = std::abs(from.velocity_mps) / limits.max_acceleration_mps2;
+  MotionProfile profile({from.position_m, from.velocity_mps, 0.0});
+  profile.append_acceleration(stop_s,
+                              -std::copysign(limits.max_acceleration_mps2, from.velocity_mps));
+  profile.set_final({profile.final_state().position_m, 0.0, 0.0});
+  return profile;
+}
+
 Error unavailable(const char* why) {
   return {ErrorCode::kUnavailable, why};
 }
@@ -83,7 +93,7 @@ void SimulatedAxisDriver::simulate_to(Time now) {
     const Time next = std::min(now, simulated_to_ + step);
     if (mode_ == Setpoint::kCyclic && next > cyclic_end_ && cyclic_to_.velocity_mps != 0.0) {
       // The stream of setpoints has dried up: the drive stops by itself.
-      profile_ = plan_stop(limits_, cyclic_to_);
+      profile_ = quick_stop(limits_, cyclic_to_);
       profile_start_ = cyclic_end_;
       mode_ = Setpoint::kProfile;
     }
@@ -110,7 +120,7 @@ void SimulatedAxisDriver::simulate_to(Time now) {
 }
 
 void SimulatedAxisDriver::stop_from(Time now) {
-  profile_ = plan_stop(limits_, setpoint_);
+  profile_ = quick_stop(limits_, setpoint_);
   profile_start_ = now;
   mode_ = Setpoint::kProfile;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "furrow_core/random.hpp"
 #include "rig.hpp"
@@ -103,9 +102,8 @@ Outcome drive(const Scenario& scenario, std::uint64_t seed) {
   outcome.p50_mm = errors_mm[errors_mm.size() / 2];
   outcome.p95_mm = errors_mm[errors_mm.size() * 95 / 100];
   outcome.max_mm = errors_mm.back();
-  std::printf("planned %d sprayed %d late %d p50 %.2f p95 %.2f max %.2f along %.2f mm\n",
-              outcome.planned, outcome.sprayed, outcome.late, outcome.p50_mm, outcome.p95_mm,
-              outcome.max_mm, outcome.mean_along_mm);
+  ::testing::Test::RecordProperty("p95_mm", std::to_string(outcome.p95_mm));
+  ::testing::Test::RecordProperty("max_mm", std::to_string(outcome.max_mm));
   return outcome;
 }
 

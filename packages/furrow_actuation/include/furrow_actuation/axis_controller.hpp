@@ -97,6 +97,8 @@ class AxisController {
 
   // Motion.
   [[nodiscard]] MotionState motion_at(Time time) const;
+  /// The drive may have moved or stopped by itself: go on from where it holds.
+  void adopt_drive_setpoint(Time now);
   void move_to(double q_m, Time now);
   /// On to the same target with the axis' full limits.
   void hurry(Time now);

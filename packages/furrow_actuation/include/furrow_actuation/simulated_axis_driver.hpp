@@ -19,7 +19,9 @@ struct SimulatedAxisParameters {
 
 /// A simulated servo drive. The axis follows its setpoint as a first-order lag (0: ideally), so the
 /// following error is velocity times lag and limits kept by the setpoint are kept by the axis.
-/// Time moves in read(): the axis is simulated up to `now`.
+/// On a fault, an emergency stop, a cut wire or when setpoints stop coming it brakes by itself with
+/// the greatest deceleration, without regard to the jerk. Time moves in read(): the axis is
+/// simulated up to `now`.
 class SimulatedAxisDriver final : public AxisDriver {
  public:
   /// Throws ConfigError for limits that are not positive or a start outside them.
