@@ -61,8 +61,8 @@ class Ground {
   /// The block whose corner texel is (block_x * kSize, block_y * kSize), shaded by `casters`.
   void make_block(std::int32_t block_x, std::int32_t block_y,
                   const std::vector<ShadowTriangle>& casters, GroundBlock& block) const;
-  /// How far a caster's top may stand from a block and still shade it.
-  [[nodiscard]] double shadow_reach_m() const { return shadow_reach_m_; }
+  /// How far from a block something of this height may stand and still shade it.
+  [[nodiscard]] double shadow_length_m(double height_m) const;
 
  private:
   struct Region;
@@ -76,7 +76,6 @@ class Ground {
   Light light_;
   std::uint64_t seed_;
   double texel_m_;
-  double shadow_reach_m_;
   std::vector<float> fine_tile_;
   std::vector<float> coarse_tile_;
   Eigen::Vector3f soil_linear_;

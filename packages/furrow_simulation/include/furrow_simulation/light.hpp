@@ -33,8 +33,15 @@ class Light {
   [[nodiscard]] const Eigen::Vector3f& sky_rgb() const { return sky_rgb_; }
 
   /// The camera's response: linear RGB radiance to gamma-encoded BGR in [0, 255], with exposure
-  /// already in the light, then contrast and saturation. (sRGB-like power curve of 1/2.2.)
-  [[nodiscard]] Eigen::Vector3f encode_bgr(const Eigen::Vector3f& linear_rgb) const;
+  /// already in the light, then contrast and saturation. The curve is a
+  /// square root.
+  [[nodiscard]] Eigen::Vector3f encode_bgr(const Eigen::Vector3f& linear_rgb) const {
+    const Eigen::Array3f gamma = 255.0f * linear_rgb.array().max(0.0f).sqrt();
+    const Eigen::Array3f stretched = (gamma - 118.0f) * contrast_ + 118.0f;
+    const float luma = 0.3f * stretched.x() + 0.59f * stretched.y() + 0.11f * stretched.z();
+    const Eigen::Array3f color = ((stretched - luma) * saturation_ + luma).max(0.0f).min(255.0f);
+    return {color.z(), color.y(), color.x()};
+  }
 
  private:
   Eigen::Vector3f to_sun_F_;

@@ -55,12 +55,9 @@ class PhotoGround final : public Scene {
                              std::uint64_t frame_index) override;
 
  private:
-  struct Level {
-    cv::Mat bgr;
-    cv::Mat instance_id;
-  };
   struct Photo {
-    std::vector<Level> levels;  ///< each half the size of the one before
+    std::vector<cv::Mat> levels;  ///< each half the size of the one before
+    cv::Mat instance_id;          ///< of the first level
   };
   struct Cell {
     std::size_t photo = 0;

@@ -3,35 +3,18 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_field/field_model.hpp"
+#include "furrow_field/species.hpp"
 
 namespace furrow::simulation {
 
-/// How a plant is built and what its leaves look like.
-enum class PlantForm : std::uint8_t {
-  kBeet,        ///< rosette of large, glossy, undulated oval blades on petioles
-  kBroadleaf,   ///< oval, pointed leaves in opposite pairs
-  kLobed,       ///< rhombic, toothed leaves, mealy grey-green (goosefoot)
-  kGrass,       ///< long narrow blades
-  kFeathery,    ///< finely divided leaves (mayweed, carrot)
-  kTrifoliate,  ///< three rounded leaflets on a stalk
-  kRosette,     ///< many small round leaves close to the ground
-  kThistle,     ///< long, deeply toothed leaves in a rosette
-  kWhorled,     ///< whorls of narrow leaves (cleavers)
-};
-
-inline constexpr std::array kPlantForms = {
-    PlantForm::kBeet,    PlantForm::kBroadleaf, PlantForm::kLobed,
-    PlantForm::kGrass,   PlantForm::kFeathery,  PlantForm::kTrifoliate,
-    PlantForm::kRosette, PlantForm::kThistle,   PlantForm::kWhorled};
-
-/// The form for a species' name (lower case, words joined by '_'; common and Latin names). A name
-/// that the table does not hold is drawn as kBeet for a crop, and as kBroadleaf for a weed.
-[[nodiscard]] PlantForm plant_form(std::string_view species, field::PlantKind kind);
+/// How a plant of this species is drawn. A name that the table does not hold is drawn as kBeet for
+/// a crop, and as kBroadleaf for a weed.
+[[nodiscard]] field::LeafForm leaf_form(const field::SpeciesTable& species,
+                                        const field::Plant& plant);
 
 /// How plants look, beyond their form.
 struct PlantParameters {
@@ -55,7 +38,6 @@ struct PlantVertex {
 };
 
 struct PlantMesh {
-  PlantForm form = PlantForm::kBeet;
   std::vector<PlantVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double top_area_mm2 = 0.0;  ///< of the silhouette seen from straight above
@@ -67,8 +49,11 @@ struct PlantMesh {
 /// Plant::radius_m, then its blades' width is chosen so that the area seen from above comes near
 /// Plant::area_mm2. A radius or an area that is not positive follows from the other one; with
 /// neither, the radius is 10 mm. Leaves are bounded to [2, 16], radii to [2, 400] mm.
-[[nodiscard]] PlantMesh build_plant_mesh(const field::Plant& plant,
+[[nodiscard]] PlantMesh build_plant_mesh(const field::Plant& plant, field::LeafForm form,
                                          const PlantParameters& parameters, std::uint64_t seed);
+
+/// A bound on the radius of a plant's mesh; its height is at most 1.1 times that.
+[[nodiscard]] double max_mesh_radius_m(const field::Plant& plant);
 
 /// The area of the mesh's silhouette from straight above, by rasterization.
 [[nodiscard]] double top_view_area_mm2(const PlantMesh& mesh);

@@ -10,11 +10,14 @@ namespace furrow::simulation {
 
 /// Renders a field of plants on soil. Plants and ground are built where the camera first looks and
 /// kept in bounded caches, so that a camera that moves slowly costs little per frame. Ground is
-/// rendered up to 2 m around the point under the image's centre.
+/// rendered up to 1.9 m (at 1 mm resolution; in proportion at others) along x and y around the
+/// point at the image's centre, and within 5 km of F's origin.
 class Renderer final : public Scene {
  public:
-  /// Throws ConfigError for parameters that are not usable.
-  Renderer(field::FieldModel field, const RendererParameters& parameters, std::uint64_t seed);
+  /// `species` says how plants are drawn. Throws ConfigError for
+  /// parameters that are not usable and for plants whose place is not within 5 km of F's origin.
+  Renderer(field::FieldModel field, const RendererParameters& parameters, std::uint64_t seed,
+           const field::SpeciesTable& species = field::SpeciesTable::defaults());
   ~Renderer() override;
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

@@ -1,0 +1,318 @@
+#include "furrow_simulation/photo_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+
+#include "furrow_core/error.hpp"
+#include "furrow_core/random.hpp"
+#include "parallel.hpp"
+#include "view.hpp"
+
+namespace furrow::simulation {
+namespace {
+
+constexpr int kMaxCells = 100'000;
+constexpr int kMinLevel_px = 16;
+
+// What a mask says of a plant, in pixels of its photo.
+struct MaskedPlant {
+  std::int64_t pixels = 0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Vector2d stem = Eigen::Vector2d::Zero();
+  double radius = 0.0;
+};
+
+GroundPhoto turned(const GroundPhoto& photo, int quarter_turns) {
+  GroundPhoto out = photo;
+  out.bgr = photo.bgr.clone();
+  out.instance_id = photo.instance_id.clone();
+  for (int turn = 0; turn < quarter_turns; ++turn) {
+    const double last_x = out.bgr.cols - 1.0;
+    cv::rotate(cv::Mat(out.bgr), out.bgr, cv::ROTATE_90_COUNTERCLOCKWISE);
+    cv::rotate(cv::Mat(out.instance_id), out.instance_id, cv::ROTATE_90_COUNTERCLOCKWISE);
+    for (auto& plant : out.plants) {
+      if (plant.stem_px)
+        plant.stem_px = Eigen::Vector2d(plant.stem_px->y(), last_x - plant.stem_px->x());
+    }
+  }
+  return out;
+}
+
+void check(const GroundPhoto& photo, std::size_t number, const cv::Size& size) {
+  const std::string name = "photo " + std::to_string(number);
+  if (photo.bgr.empty() || photo.bgr.type() != CV_8UC3) {
+    throw ConfigError(name + ": the picture must hold 8-bit BGR pixels");
+  }
+  if (photo.instance_id.type() != CV_32SC1 || photo.instance_id.size() != photo.bgr.size()) {
+    throw ConfigError(name + ": the instances must be 32-bit integers of the picture's size");
+  }
+  if (photo.bgr.size() != size) {
+    throw ConfigError(name + ": all photos must have the same size");
+  }
+  double low = 0.0;
+  double high = 0.0;
+  cv::minMaxLoc(photo.instance_id, &low, &high);
+  if (low < -1.0 || high >= static_cast<double>(photo.plants.size())) {
+    throw ConfigError(name + ": an instance has no plant");
+  }
+  for (const auto& plant : photo.plants) {
+    if (plant.stem_px && !plant.stem_px->allFinite()) {
+      throw ConfigError(name + ": a stem's place is not finite");
+    }
+  }
+}
+
+std::vector<MaskedPlant> measure(const GroundPhoto& photo) {
+  std::vector<MaskedPlant> masks(photo.plants.size());
+  const auto each = [&](const auto& use) {
+    for (int v = 0; v < photo.instance_id.rows; ++v) {
+      const auto* row = photo.instance_id.ptr<std::int32_t>(v);
+      for (int u = 0; u < photo.instance_id.cols; ++u) {
+        if (row[u] >= 0) use(masks[static_cast<std::size_t>(row[u])], Eigen::Vector2d(u, v));
+      }
+    }
+  };
+  each([](MaskedPlant& mask, const Eigen::Vector2d& pixel) {
+    ++mask.pixels;
+    mask.sum += pixel;
+  });
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (masks[i].pixels == 0) continue;
+    masks[i].stem =
+        photo.plants[i].stem_px.value_or(masks[i].sum / static_cast<double>(masks[i].pixels));
+  }
+  each([](MaskedPlant& mask, const Eigen::Vector2d& pixel) {
+    mask.radius = std::max(mask.radius, (pixel - mask.stem).norm());
+  });
+  return masks;
+}
+
+}  // namespace
+
+void PhotoGroundParameters::visit(ParameterVisitor& v) {
+  v.visit({.name = "photo_resolution_mm_per_px",
+           .unit = "mm",
+           .description = "what a photo's pixel is taken to measure on the ground",
+           .min = 0.02,
+           .max = 20.0},
+          photo_resolution_mm_per_px);
+  v.visit(
+      {.name = "length_m", .unit = "m", .description = "of the scene", .min = 0.1, .max = 1000.0},
+      length_m);
+  v.visit({.name = "width_m", .unit = "m", .description = "of the scene", .min = 0.1, .max = 50.0},
+          width_m);
+  v.visit({.name = "quarter_turns",
+           .description = "turns every photo counter-clockwise",
+           .min = 0,
+           .max = 3},
+          quarter_turns);
+  v.visit({.name = "vary_repeats", .description = "mirror and turn copies of a photo by half"},
+          vary_repeats);
+  v.visit({.name = "threads",
+           .description = "that share the work of a frame; changes the time, not the bytes",
+           .min = 1,
+           .max = 16},
+          threads);
+  camera.visit(v);
+}
+
+PhotoGround::PhotoGround(const std::vector<GroundPhoto>& photos,
+                         const PhotoGroundParameters& parameters, std::uint64_t seed)
+    : parameters_(parameters), effects_(parameters.camera, seed) {
+  if (photos.empty()) throw ConfigError("photo ground: no photo");
+  const double pixel_m = 1e-3 * parameters.photo_resolution_mm_per_px;
+  for (const double value : {pixel_m, parameters.length_m, parameters.width_m}) {
+    if (!(std::isfinite(value) && value > 0.0)) {
+      throw ConfigError("photo ground: resolution, length and width must be positive");
+    }
+  }
+  const int turns = static_cast<int>(std::clamp<std::int64_t>(parameters.quarter_turns, 0, 3));
+  std::vector<GroundPhoto> upright;
+  std::vector<std::vector<MaskedPlant>> masks;
+  for (std::size_t i = 0; i < photos.size(); ++i) {
+    check(photos[i], i, photos.front().bgr.size());
+    upright.push_back(turned(photos[i], turns));
+    masks.push_back(measure(upright.back()));
+    Photo photo;
+    photo.levels.push_back(upright.back().bgr);
+    photo.instance_id = upright.back().instance_id;
+    while (std::min(photo.levels.back().cols, photo.levels.back().rows) >= 2 * kMinLevel_px) {
+      const cv::Mat& finer = photo.levels.back();
+      cv::Mat coarser;
+      cv::resize(finer, coarser, {finer.cols / 2, finer.rows / 2}, 0.0, 0.0, cv::INTER_AREA);
+      photo.levels.push_back(coarser);
+    }
+    photos_.push_back(std::move(photo));
+  }
+
+  const cv::Size size = upright.front().bgr.size();
+  cell_length_m_ = size.height * pixel_m;
+  cell_width_m_ = size.width * pixel_m;
+  const double rows = std::ceil(parameters.length_m / cell_length_m_);
+  const double columns = std::ceil(parameters.width_m / cell_width_m_);
+  if (!(rows * columns <= kMaxCells)) {
+    throw ConfigError("photo ground: length and width need more than 100000 photos");
+  }
+  rows_ = static_cast<int>(rows);
+  columns_ = static_cast<int>(columns);
+
+  field_.name = "photos";
+  field_.source = "photographs: " + std::to_string(photos.size()) + " laid on " +
+                  std::to_string(rows_ * columns_) + " places";
+  field_.length_m = parameters.length_m;
+  field_.width_m = parameters.width_m;
+  std::vector<std::pair<std::size_t, std::size_t>> origin;  // cell and instance of each plant
+  Random random(seed, "photo layout");
+  for (int i = 0; i < rows_ * columns_; ++i) {
+    Cell cell;
+    cell.photo = static_cast<std::size_t>(i) % photos_.size();
+    if (parameters.vary_repeats && static_cast<std::size_t>(i) >= photos_.size()) {
+      cell.half_turn = random.bernoulli(0.5);
+      cell.mirror = random.bernoulli(0.5);
+    }
+    const GroundPhoto& photo = upright[cell.photo];
+    cell.plant_index.assign(photo.plants.size(), -1);
+    for (std::size_t k = 0; k < photo.plants.size(); ++k) {
+      const MaskedPlant& mask = masks[cell.photo][k];
+      if (mask.pixels == 0) continue;
+      Eigen::Vector2d at = mask.stem;
+      if (cell.half_turn) at = Eigen::Vector2d(size.width - 1.0, size.height - 1.0) - at;
+      if (cell.mirror) at.x() = size.width - 1.0 - at.x();
+      field::Plant plant;
+      plant.kind = photo.plants[k].kind;
+      plant.species = photo.plants[k].species;
+      plant.p_F_m = {
+          (i / columns_ + 1) * cell_length_m_ - (at.y() + 0.5) * pixel_m,
+          (i % columns_ + 1 - 0.5 * columns_) * cell_width_m_ - (at.x() + 0.5) * pixel_m};
+      plant.radius_m = std::max(mask.radius, 0.5) * pixel_m;
+      plant.area_mm2 = 1e6 * static_cast<double>(mask.pixels) * pixel_m * pixel_m;
+      const bool inside = plant.p_F_m.x() >= 0.0 && plant.p_F_m.x() <= parameters.length_m &&
+                          std::abs(plant.p_F_m.y()) <= 0.5 * parameters.width_m;
+      if (!inside) continue;
+      origin.emplace_back(static_cast<std::size_t>(i), k);
+      field_.plants.push_back(plant);
+    }
+    cells_.push_back(std::move(cell));
+  }
+  std::vector<std::size_t> order(field_.plants.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return field_.plants[a].p_F_m.x() < field_.plants[b].p_F_m.x();
+  });
+  std::vector<field::Plant> sorted;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    sorted.push_back(field_.plants[order[n]]);
+    sorted.back().id = static_cast<std::int64_t>(n);
+    const auto& [cell, instance] = origin[order[n]];
+    cells_[cell].plant_index[instance] = static_cast<std::int32_t>(n);
+  }
+  field_.plants = std::move(sorted);
+}
+
+Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Isometry3d& X_FC,
+                          std::uint64_t frame_index) {
+  const auto& intrinsics = camera.intrinsics();
+  Frame frame;
+  frame.bgr.create(intrinsics.height_px, intrinsics.width_px, CV_8UC3);
+  frame.bgr.setTo(cv::Scalar(0, 0, 0));
+  frame.depth_m = cv::Mat::zeros(frame.bgr.size(), CV_32FC1);
+  frame.plant_index.create(frame.bgr.size(), CV_32SC1);
+  frame.plant_index.setTo(-1);
+  if (!X_FC.matrix().allFinite() || X_FC.translation().z() < 0.02) return frame;
+  const View view(intrinsics, X_FC);
+  const int threads = static_cast<int>(std::clamp<std::int64_t>(parameters_.threads, 1, 16));
+
+  // The level whose pixels come nearest to the view's on the ground, without being much coarser.
+  const double pixel_m = 1e-3 * parameters_.photo_resolution_mm_per_px;
+  const double seen_m = X_FC.translation().z() / std::max(intrinsics.fx_px, intrinsics.fy_px);
+  const double finest = std::log2(1.25 * seen_m / pixel_m);
+  const auto level_count = static_cast<int>(photos_.front().levels.size());
+  const int level = finest > 0.0 ? std::min(static_cast<int>(finest), level_count - 1) : 0;
+
+  const double left_m = 0.5 * columns_ * cell_width_m_;
+  for_bands(intrinsics.height_px, threads, [&](int first, int end) {
+    for (int v = first; v < end; ++v) {
+      auto* bgr = frame.bgr.ptr<std::uint8_t>(v);
+      auto* depth = frame.depth_m.ptr<float>(v);
+      auto* index = frame.plant_index.ptr<std::int32_t>(v);
+      const Eigen::Vector3d row_ray = view.ray_F({0.0, static_cast<double>(v)});
+      const Eigen::Vector3d step = view.ray_step_F();
+      for (int u = 0; u < intrinsics.width_px; ++u) {
+        const Eigen::Vector3d ray = row_ray + u * step;
+        if (!(ray.z() < -1e-6)) continue;
+        const double distance = -view.p_FC().z() / ray.z();
+        const double x = view.p_FC().x() + distance * ray.x();
+        const double y = view.p_FC().y() + distance * ray.y();
+        if (!(x >= 0.0 && x < parameters_.length_m && std::abs(y) < 0.5 * parameters_.width_m)) {
+          continue;
+        }
+        // Cells count along +x and +y; photos upwards along +x, to the right along -y.
+        const int row = std::min(static_cast<int>(x / cell_length_m_), rows_ - 1);
+        const int column =
+            std::clamp(static_cast<int>((y + left_m) / cell_width_m_), 0, columns_ - 1);
+        const Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+        const cv::Mat& source = photos_[cell.photo].levels[static_cast<std::size_t>(level)];
+        double from_left = (column + 1) - (y + left_m) / cell_width_m_;
+        double from_top = (row + 1) - x / cell_length_m_;
+        if (cell.mirror) from_left = 1.0 - from_left;
+        if (cell.half_turn) {
+          from_left = 1.0 - from_left;
+          from_top = 1.0 - from_top;
+        }
+        const int w = source.cols;
+        const int h = source.rows;
+        const double px = std::clamp(from_left * w - 0.5, 0.0, w - 1.0);
+        const double py = std::clamp(from_top * h - 0.5, 0.0, h - 1.0);
+        const auto x0 = static_cast<int>(px);
+        const auto y0 = static_cast<int>(py);
+        const int x1 = std::min(x0 + 1, w - 1);
+        const auto part_x = static_cast<int>((px - x0) * 256.0);
+        const auto part_y = static_cast<int>((py - y0) * 256.0);
+        const auto* top = source.ptr<std::uint8_t>(y0);
+        const auto* bottom = source.ptr<std::uint8_t>(std::min(y0 + 1, h - 1));
+        for (int k = 0; k < 3; ++k) {
+          const int high = top[3 * x0 + k] * (256 - part_x) + top[3 * x1 + k] * part_x;
+          const int low = bottom[3 * x0 + k] * (256 - part_x) + bottom[3 * x1 + k] * part_x;
+          bgr[3 * u + k] =
+              static_cast<std::uint8_t>((high * (256 - part_y) + low * part_y + 32768) >> 16);
+        }
+        depth[u] = static_cast<float>(distance);
+        const cv::Mat& instances = photos_[cell.photo].instance_id;
+        const int ix =
+            std::clamp(static_cast<int>(from_left * instances.cols), 0, instances.cols - 1);
+        const int iy =
+            std::clamp(static_cast<int>(from_top * instances.rows), 0, instances.rows - 1);
+        const std::int32_t instance = instances.ptr<std::int32_t>(iy)[ix];
+        if (instance >= 0) index[u] = cell.plant_index[static_cast<std::size_t>(instance)];
+      }
+    }
+  });
+
+  std::map<std::int32_t, std::int64_t> visible;
+  for (int v = 0; v < frame.plant_index.rows; ++v) {
+    const auto* index = frame.plant_index.ptr<std::int32_t>(v);
+    for (int u = 0; u < frame.plant_index.cols; ++u) {
+      if (index[u] >= 0) ++visible[index[u]];
+    }
+  }
+  for (const auto& [index, pixels] : visible) {
+    const field::Plant& plant = field_.plants[static_cast<std::size_t>(index)];
+    const auto stem =
+        camera.project(view.X_CF() * Eigen::Vector3d(plant.p_F_m.x(), plant.p_F_m.y(), 0.0));
+    if (!stem) continue;
+    frame.plants.push_back({.plant_index = static_cast<std::size_t>(index),
+                            .id = plant.id,
+                            .visible_px = pixels,
+                            .area_mm2 = plant.area_mm2,
+                            .stem_px = *stem});
+  }
+  const Eigen::Vector3d travel_C = X_FC.linear().transpose() * Eigen::Vector3d::UnitX();
+  effects_.apply(frame.bgr, frame.depth_m, frame_index,
+                 std::abs(travel_C.y()) >= std::abs(travel_C.x()), threads);
+  return frame;
+}
+
+}  // namespace furrow::simulation
