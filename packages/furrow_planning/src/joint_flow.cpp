@@ -5,6 +5,26 @@
 
 namespace furrow::planning {
 
+void group_axes(const PreparedProblem& prepared, std::vector<std::vector<std::uint32_t>>& classes) {
+  classes.clear();
+  for (std::uint32_t a = 0; a < prepared.starts.size(); ++a) {
+    const Start& start = prepared.starts[a];
+    if (!start.usable) {
+      continue;
+    }
+    const auto same = std::find_if(classes.begin(), classes.end(), [&](const auto& axes) {
+      const Start& other = prepared.starts[axes.front()];
+      return other.lower_y_m == start.lower_y_m && other.upper_y_m == start.upper_y_m &&
+             other.transition == start.transition;
+    });
+    if (same == classes.end()) {
+      classes.push_back({a});
+    } else {
+      same->push_back(a);
+    }
+  }
+}
+
 // Node numbers: 0 the source; 1 to axes the starts; then bus, in and out of each member; the sink.
 
 std::int64_t JointFlow::solve(const PreparedProblem& prepared,

@@ -9,6 +9,9 @@
 
 namespace furrow::planning {
 
+/// Writes the axes in service as classes that agree in span and limits.
+void group_axes(const PreparedProblem& prepared, std::vector<std::vector<std::uint32_t>>& classes);
+
 /// The exact joint optimum of axes that agree in span and limits: disjoint chains, one for each
 /// axis, of greatest total score, and of those of least travel.
 ///

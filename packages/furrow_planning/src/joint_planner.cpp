@@ -3,20 +3,12 @@
 #include <algorithm>
 
 namespace furrow::planning {
-namespace {
-
-bool agree(const Start& a, const Start& b) {
-  return a.lower_y_m == b.lower_y_m && a.upper_y_m == b.upper_y_m && a.transition == b.transition;
-}
-
-}  // namespace
-
 Status JointPlanner::plan(const PlanningProblem& problem, Plan& plan) {
   if (Status status = prepare(problem, parameters_, 0.0, prepared_, plan); !status) {
     return status;
   }
   drop_protected(problem, parameters_, prepared_, plan);
-  find_classes();
+  group_axes(prepared_, classes_);
   chains_.resize(prepared_.starts.size());
   for (auto& chain : chains_) {
     chain.clear();
@@ -34,23 +26,6 @@ Status JointPlanner::plan(const PlanningProblem& problem, Plan& plan) {
       std::max(plan.weight, (bound + 0.5 * static_cast<double>(prepared_.nodes.size())) /
                                 prepared_.scoring.scores_per_weight);
   return {};
-}
-
-void JointPlanner::find_classes() {
-  classes_.clear();
-  for (std::uint32_t a = 0; a < prepared_.starts.size(); ++a) {
-    if (!prepared_.starts[a].usable) {
-      continue;
-    }
-    const auto same = std::find_if(classes_.begin(), classes_.end(), [&](const auto& axes) {
-      return agree(prepared_.starts[axes.front()], prepared_.starts[a]);
-    });
-    if (same == classes_.end()) {
-      classes_.push_back({a});
-    } else {
-      same->push_back(a);
-    }
-  }
 }
 
 std::int64_t JointPlanner::solve_mixed(const PlanningProblem& problem) {

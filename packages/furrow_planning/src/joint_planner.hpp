@@ -23,7 +23,6 @@ class JointPlanner final : public RoutePlanner {
 
  private:
   static constexpr int kRounds = 8;
-  void find_classes();
   /// Improves chains_ class by class until nothing is gained. Returns their score.
   std::int64_t solve_classes();
   /// Writes chains_; returns the bound.

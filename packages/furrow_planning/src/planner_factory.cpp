@@ -1,4 +1,5 @@
 #include "divided_planner.hpp"
+#include "footprint_planner.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_planning/kinematics.hpp"
 #include "furrow_planning/route_planner.hpp"
@@ -51,6 +52,9 @@ std::unique_ptr<RoutePlanner> make_route_planner(const PlannerParameters& parame
   }
   if (copy.planner == "exact") {
     return std::make_unique<JointPlanner>(copy);
+  }
+  if (copy.planner == "footprint") {
+    return std::make_unique<FootprintPlanner>(copy);
   }
   throw ConfigError("the planner " + copy.planner + " has no joint assignment");
 }

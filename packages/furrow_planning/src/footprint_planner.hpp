@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "furrow_planning/route_planner.hpp"
+#include "joint_flow.hpp"
+#include "spray_candidates.hpp"
+#include "spray_chain.hpp"
+
+namespace furrow::planning {
+
+/// Plans sprays as discs that may be centred anywhere and treat several targets. Searches over the
+/// placements of SprayCandidates: from the exact joint routes of sprays on single stems, which also
+/// keep the travel low, by improving the axes one after the other, each best against what the
+/// others treat, until nothing is gained. Plan::weight_bound counts every target that some
+/// placement treats.
+class FootprintPlanner final : public RoutePlanner {
+ public:
+  explicit FootprintPlanner(const PlannerParameters& parameters) : parameters_(parameters) {}
+  [[nodiscard]] Status plan(const PlanningProblem& problem, Plan& plan) override;
+  [[nodiscard]] std::string_view name() const override { return "footprint joint"; }
+
+ private:
+  struct Treated {  ///< by which spray a node is treated, once the chains stand
+    double squared_distance_m2 = 0.0;
+    std::int32_t axis = -1;
+    std::uint32_t stop = 0;
+  };
+
+  void start_from_stems();
+  void improve_routes();
+  /// Adds (or takes away) what a chain covers.
+  void cover(const std::vector<std::uint32_t>& chain, int change);
+  /// The same as adding; returns what the chain is worth against what was covered before.
+  std::int64_t cover_and_weigh(const Start& start, const std::vector<std::uint32_t>& chain);
+  /// Each node to the nearest spray that covers it.
+  void share_out();
+  void write_routes(const PlanningProblem& problem, Plan& plan);
+  /// Moves the sprays of a route towards the middle of what they treat, as far as its neighbours,
+  /// the span and the zones allow.
+  void centre_route(const Start& start, std::size_t axis);
+  void explain_left(Plan& plan) const;
+
+  PlannerParameters parameters_;
+  PreparedProblem prepared_;
+  SprayCandidates candidates_;
+  SprayChainSolver solver_;
+  JointFlow flow_;
+  std::vector<std::vector<std::uint32_t>> classes_;
+  std::vector<std::uint32_t> members_;
+  std::vector<std::vector<std::uint32_t>> chains_;
+  std::vector<std::uint32_t> trial_;
+  std::vector<std::uint16_t> covered_;
+  std::vector<Treated> treated_;                        ///< by node
+  std::vector<std::vector<Eigen::Vector2d>> aims_;      ///< by axis and stop
+  std::vector<std::vector<std::uint32_t>> stop_nodes_;  ///< by stop of the axis at hand
+};
+
+}  // namespace furrow::planning
