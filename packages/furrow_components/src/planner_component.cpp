@@ -75,7 +75,8 @@ struct LateralAxis {
     return (nozzle_y - model->p_BN0.y()) / model->direction_B.y();
   }
   [[nodiscard]] planning::AxisSpec spec() const {
-    const auto [lower, upper] = std::minmax(nozzle_y_m(model->lower_m), nozzle_y_m(model->upper_m));
+    const auto [lower, upper] =
+        std::minmax({nozzle_y_m(model->lower_m), nozzle_y_m(model->upper_m)});
     return {.offset_x_m = model->p_BN0.x(),
             .lower_m = lower,
             .upper_m = upper,
