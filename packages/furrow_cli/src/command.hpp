@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace furrow::cli {
+
+// Each adds one verb to the command line. A verb sets `exit_code` when it has run: 0 well, 1 ran
+// but failed or found faults. Bad usage and configuration throw, and main() makes them 2.
+void add_run_command(CLI::App& app, int& exit_code);
+void add_graph_command(CLI::App& app, int& exit_code);
+void add_params_command(CLI::App& app, int& exit_code);
+void add_field_command(CLI::App& app, int& exit_code);
+
+}  // namespace furrow::cli

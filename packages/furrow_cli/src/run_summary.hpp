@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "furrow_graph/runtime.hpp"
+#include "furrow_ledger/ledger.hpp"
+
+namespace furrow::cli {
+
+/// What the components did, for the report. Wall-clock figures are left out in lock-step, so that
+/// two runs of one seed give the same report.
+[[nodiscard]] std::vector<ledger::ReportTable> health_tables(
+    std::span<const graph::ComponentStatus> components, bool with_times);
+
+/// The short table that a run ends with.
+[[nodiscard]] std::string outcome_text(const ledger::Summary& summary);
+
+/// Messages that full mailboxes dropped, over all components.
+[[nodiscard]] std::uint64_t dropped_messages(std::span<const graph::ComponentStatus> components);
+
+}  // namespace furrow::cli
