@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "furrow_core/time.hpp"
+#include "furrow_dds/dds_transport.hpp"
+#include "furrow_recording/player.hpp"
+
+namespace furrow::recording {
+
+struct DdsPlayerOptions {
+  /// Wait this long at most for a reader of any topic before the first message; volatile messages
+  /// without a reader are gone.
+  Duration wait_for_readers;
+};
+
+struct DdsPlayerStatus {
+  std::uint64_t messages = 0;
+  std::uint64_t dropped = 0;  ///< the wire refused them, or its queue was full
+  std::uint64_t faults = 0;   ///< damaged chunks left out
+  std::string last_fault;
+  double lateness_p99_s = 0.0;  ///< of the last 4096 messages, against their due time
+  Time position;                ///< in the recording
+  bool paused = false;
+  bool finished = false;
+};
+
+/// Writes a recording to a domain, with the QoS that was recorded, on a thread of its own.
+class DdsPlayer {
+ public:
+  /// Starts at once. Throws ConfigError when an endpoint is refused. The transport must outlive it.
+  DdsPlayer(dds::DdsTransport& transport, Player player, const DdsPlayerOptions& options = {});
+  ~DdsPlayer();
+
+  // Thread-safe.
+  void pause();
+  void resume();
+  void step(std::uint64_t messages = 1);
+  void seek(Time to);
+  [[nodiscard]] Status set_rate(double rate);
+  void stop();
+  /// Waits for the end of the recording; false when `timeout` passed before.
+  [[nodiscard]] bool wait(Duration timeout);
+  [[nodiscard]] DdsPlayerStatus status() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace furrow::recording
