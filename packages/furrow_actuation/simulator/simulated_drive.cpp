@@ -1,0 +1,248 @@
+#include "simulated_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow::actuation::drive_simulator {
+namespace {
+
+constexpr double kFollowingErrorWindow = 5000.0;
+constexpr std::uint16_t kFollowingErrorCode = 0x8611;
+
+bool bit(std::uint16_t word, int n) {
+  return (word >> n & 1) != 0;
+}
+
+}  // namespace
+
+SimulatedDrive::SimulatedDrive() {
+  parameters_ = {{{0x607A, 0}, 12345},   {{0x607D, 1}, -200000}, {{0x607D, 2}, 200000},
+                 {{0x6081, 0}, 100000},  {{0x6083, 0}, 1000000}, {{0x6084, 0}, 1000000},
+                 {{0x6085, 0}, 5000000}, {{0x6098, 0}, 37},      {{0x6099, 1}, 5000},
+                 {{0x6099, 2}, 5000},    {{0x609A, 0}, 50000}};
+}
+
+double SimulatedDrive::parameter(std::uint16_t index, std::uint8_t sub) const {
+  return parameters_.at({index, sub});
+}
+
+std::uint16_t SimulatedDrive::statusword() const {
+  std::uint16_t word = 1u << 9;  // remote
+  switch (phase_) {
+    case Phase::kStarting:
+      break;
+    case Phase::kLocked:
+      word |= 0x40;
+      break;
+    case Phase::kPrepared:
+      word |= 0x21;
+      break;
+    case Phase::kPoweredOn:
+      word |= 0x33;
+      break;
+    case Phase::kOperating:
+      word |= 0x37;
+      break;
+    case Phase::kQuickStop:
+      word |= 0x17;
+      break;
+    case Phase::kReacting:
+      word |= 0x1F;
+      break;
+    case Phase::kFaulted:
+      word |= 0x08;
+      break;
+  }
+  const bool standing = std::abs(velocity_) < 1.0;
+  const bool there = standing && std::abs(position_ - target_) < 10.0;
+  if (mode_ == 6 ? (standing && !homing_) : there) word |= 1u << 10;
+  if (mode_ == 1 && acknowledged_) word |= 1u << 12;
+  if (mode_ == 8 && phase_ == Phase::kOperating) word |= 1u << 12;
+  if (mode_ == 6 && homed_) word |= 1u << 12;
+  if (mode_ == 6 ? homing_error_ : following_error_) word |= 1u << 13;
+  return word;
+}
+
+std::optional<std::int32_t> SimulatedDrive::read(std::uint16_t index, std::uint8_t sub) const {
+  if (const auto found = parameters_.find({index, sub}); found != parameters_.end()) {
+    return found->second;
+  }
+  if (sub != 0) return std::nullopt;
+  switch (index) {
+    case 0x603F:
+      return error_code_;
+    case 0x6040:
+      return controlword_;
+    case 0x6041:
+      return statusword();
+    case 0x6060:
+    case 0x6061:
+      return mode_;
+    case 0x6064:
+      return static_cast<std::int32_t>(std::lround(position_));
+    case 0x606C:
+      return static_cast<std::int32_t>(std::lround(velocity_));
+    case 0x60F4:
+      return static_cast<std::int32_t>(std::lround(demand_ - position_));
+    default:
+      return std::nullopt;
+  }
+}
+
+SimulatedDrive::Answer SimulatedDrive::write(std::uint16_t index, std::uint8_t sub,
+                                             std::int32_t value) {
+  if (index == 0x6040 && sub == 0) {
+    take_controlword(static_cast<std::uint16_t>(value));
+    return Answer::kOk;
+  }
+  if (index == 0x6060 && sub == 0) {
+    if (value != 1 && value != 6 && value != 8) return Answer::kBadValue;
+    mode_ = value;
+    target_ = demand_;
+    parameters_[{0x607A, 0}] = static_cast<std::int32_t>(std::lround(demand_));
+    return Answer::kOk;
+  }
+  const auto found = parameters_.find({index, sub});
+  if (found == parameters_.end()) {
+    return read(index, sub) ? Answer::kReadOnly : Answer::kNoObject;
+  }
+  const bool position = index == 0x607A;
+  if (position && (value < parameter(0x607D, 1) || value > parameter(0x607D, 2))) {
+    return Answer::kBadValue;
+  }
+  if (!position && index != 0x607D && index != 0x6098 && value <= 0) return Answer::kBadValue;
+  found->second = value;
+  return Answer::kOk;
+}
+
+void SimulatedDrive::take_controlword(std::uint16_t word) {
+  const bool reset_edge = bit(word, 7) && !bit(controlword_, 7);
+  const std::uint16_t before = controlword_;
+  controlword_ = word;
+  if (phase_ == Phase::kFaulted) {
+    if (reset_edge && !cause_lasts_) {
+      phase_ = Phase::kLocked;
+      error_code_ = 0;
+      following_error_ = false;
+    }
+    return;
+  }
+  if (phase_ == Phase::kStarting || phase_ == Phase::kReacting) return;
+  const bool powered = phase_ == Phase::kOperating || phase_ == Phase::kQuickStop;
+  if (!bit(word, 1)) {  // disable voltage: from every state, the motor runs out
+    phase_ = Phase::kLocked;
+  } else if (!bit(word, 2)) {  // quick stop
+    if (powered) {
+      phase_ = Phase::kQuickStop;
+    } else {
+      phase_ = Phase::kLocked;
+    }
+  } else if (phase_ == Phase::kQuickStop) {
+    return;                    // leaves by disable voltage only
+  } else if (!bit(word, 0)) {  // shutdown
+    phase_ = Phase::kPrepared;
+  } else if (phase_ == Phase::kPrepared) {
+    phase_ = Phase::kPoweredOn;
+  } else if (phase_ == Phase::kPoweredOn && bit(word, 3)) {
+    phase_ = Phase::kOperating;
+    demand_ = target_ = position_;
+    parameters_[{0x607A, 0}] = static_cast<std::int32_t>(std::lround(position_));
+  } else if (phase_ == Phase::kOperating && !bit(word, 3)) {  // disable operation
+    phase_ = Phase::kPoweredOn;
+  } else if (phase_ == Phase::kOperating) {
+    if (bit(word, 4) && !bit(before, 4)) start_action(word);
+    if (!bit(word, 4)) acknowledged_ = false;
+  }
+  if (phase_ != Phase::kOperating) homing_ = false;
+}
+
+void SimulatedDrive::start_action(std::uint16_t) {
+  if (mode_ == 1) {
+    target_ = parameter(0x607A);
+    acknowledged_ = true;
+  } else if (mode_ == 6) {
+    homing_ = true;
+    homed_ = false;
+    homing_error_ = false;
+  }
+}
+
+void SimulatedDrive::fault(std::uint16_t error_code) {
+  if (phase_ == Phase::kFaulted) return;
+  cause_lasts_ = true;
+  error_code_ = error_code;
+  homing_ = false;
+  phase_ = Phase::kReacting;
+}
+
+void SimulatedDrive::brake(double deceleration, double h) {
+  const double slower = std::max(0.0, std::abs(velocity_) - deceleration * h);
+  velocity_ = std::copysign(slower, velocity_);
+  demand_ += velocity_ * h;
+}
+
+void SimulatedDrive::move_towards(double target, double speed, double acceleration, double h) {
+  const double distance = target - demand_;
+  const double allowed = std::min(speed, std::sqrt(2.0 * acceleration * std::abs(distance)));
+  const double wanted = std::min(allowed, std::abs(distance) / h);
+  const double goal = std::copysign(wanted, distance);
+  velocity_ += std::clamp(goal - velocity_, -acceleration * h * 1.5, acceleration * h);
+  velocity_ = std::clamp(velocity_, -speed, speed);
+  demand_ += velocity_ * h;
+  if (std::abs(target - demand_) < 1.0 && std::abs(velocity_) < 2.0 * acceleration * h) {
+    demand_ = target;
+    velocity_ = 0.0;
+  }
+}
+
+void SimulatedDrive::advance(double seconds) {
+  constexpr double kStep = 1e-4;
+  for (double done = 0.0; done < seconds - kStep / 2.0; done += kStep) {
+    switch (phase_) {
+      case Phase::kStarting:
+        phase_ = Phase::kLocked;
+        break;
+      case Phase::kReacting:
+        brake(parameter(0x6085), kStep);
+        if (velocity_ == 0.0) phase_ = Phase::kFaulted;
+        break;
+      case Phase::kOperating:
+        if (bit(controlword_, 8)) {
+          brake(parameter(0x6084), kStep);
+          target_ = demand_;
+        } else if (mode_ == 1) {
+          move_towards(target_, parameter(0x6081), parameter(0x6083), kStep);
+        } else if (mode_ == 8) {
+          target_ = parameter(0x607A);
+          const double v =
+              std::clamp((target_ - demand_) / 1e-3, -parameter(0x6081), parameter(0x6081));
+          velocity_ = v;
+          demand_ += v * kStep;
+        } else if (mode_ == 6 && homing_ && !reference_missing_) {
+          move_towards(0.0, parameter(0x6099, 1), parameter(0x609A), kStep);
+          if (demand_ == 0.0 && velocity_ == 0.0) {
+            homing_ = false;
+            homed_ = true;
+            target_ = 0.0;
+          }
+        } else if (mode_ == 6 && homing_) {
+          homing_ = false;
+          homing_error_ = true;
+        }
+        break;
+      default:
+        brake(parameter(0x6085), kStep);
+        break;
+    }
+    if (!jammed_) position_ = demand_;
+    if (phase_ == Phase::kOperating && std::abs(demand_ - position_) > kFollowingErrorWindow) {
+      following_error_ = true;
+      fault(kFollowingErrorCode);
+      velocity_ = 0.0;
+      demand_ = position_;
+      cause_lasts_ = false;
+    }
+  }
+}
+
+}  // namespace furrow::actuation::drive_simulator

@@ -1,0 +1,278 @@
+#include "furrow_actuation/modbus_axis_driver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+#include "../simulator/drive_server.hpp"
+#include "furrow_core/error.hpp"
+
+namespace furrow::actuation::cia402 {
+namespace {
+
+using drive_simulator::DriveServer;
+using drive_simulator::SimulatedDrive;
+using Phase = SimulatedDrive::Phase;
+
+constexpr MotionLimits kLimits{-0.695, 0.695, 1.0, 10.0, 1000.0};
+constexpr Phase kPhases[] = {Phase::kStarting,  Phase::kLocked,    Phase::kPrepared,
+                             Phase::kPoweredOn, Phase::kOperating, Phase::kQuickStop,
+                             Phase::kReacting,  Phase::kFaulted};
+
+// The drive's own state machine, against the table of the standard.
+
+Phase after(Phase from, std::int32_t controlword, std::int32_t before = 0) {
+  SimulatedDrive drive;
+  EXPECT_EQ(drive.write(0x6040, 0, before), SimulatedDrive::Answer::kOk);
+  drive.force_phase(from);
+  EXPECT_EQ(drive.write(0x6040, 0, controlword), SimulatedDrive::Answer::kOk);
+  return drive.phase();
+}
+
+TEST(SimulatedDriveStates, EveryCommandInEveryState) {
+  struct Row {
+    Phase from, voltage_off, quick_stop, shutdown, switch_on, enable, fault_reset;
+  };
+  // Commands that the standard does not know in a state leave it as it is.
+  const Row rows[] = {{Phase::kStarting, Phase::kStarting, Phase::kStarting, Phase::kStarting,
+                       Phase::kStarting, Phase::kStarting, Phase::kStarting},
+                      {Phase::kLocked, Phase::kLocked, Phase::kLocked, Phase::kPrepared,
+                       Phase::kLocked, Phase::kLocked, Phase::kLocked},
+                      {Phase::kPrepared, Phase::kLocked, Phase::kLocked, Phase::kPrepared,
+                       Phase::kPoweredOn, Phase::kPoweredOn, Phase::kLocked},
+                      {Phase::kPoweredOn, Phase::kLocked, Phase::kLocked, Phase::kPrepared,
+                       Phase::kPoweredOn, Phase::kOperating, Phase::kLocked},
+                      {Phase::kOperating, Phase::kLocked, Phase::kQuickStop, Phase::kPrepared,
+                       Phase::kPoweredOn, Phase::kOperating, Phase::kLocked},
+                      {Phase::kQuickStop, Phase::kLocked, Phase::kQuickStop, Phase::kQuickStop,
+                       Phase::kQuickStop, Phase::kQuickStop, Phase::kLocked},
+                      {Phase::kReacting, Phase::kReacting, Phase::kReacting, Phase::kReacting,
+                       Phase::kReacting, Phase::kReacting, Phase::kReacting},
+                      {Phase::kFaulted, Phase::kFaulted, Phase::kFaulted, Phase::kFaulted,
+                       Phase::kFaulted, Phase::kFaulted, Phase::kLocked}};
+  for (const Row& row : rows) {
+    SCOPED_TRACE(static_cast<int>(row.from));
+    EXPECT_EQ(after(row.from, 0x00), row.voltage_off);
+    EXPECT_EQ(after(row.from, 0x02), row.quick_stop);
+    EXPECT_EQ(after(row.from, 0x06), row.shutdown);
+    EXPECT_EQ(after(row.from, 0x07), row.switch_on);
+    EXPECT_EQ(after(row.from, 0x0F), row.enable);
+    EXPECT_EQ(after(row.from, 0x80), row.fault_reset);
+  }
+  EXPECT_EQ(after(Phase::kFaulted, 0x80, 0x80), Phase::kFaulted);  // no edge, no reset
+}
+
+/// A driver against the drive over a real connection on the loopback. The drive's time moves by one
+/// millisecond with each request, so nothing here depends on the machine's speed.
+class Wire {
+ public:
+  Wire() : server_(drive, "127.0.0.1", 0), driver_(kLimits, parameters(server_.port())) {
+    thread_ = std::thread([this] {
+      server_.serve([this] {
+        const std::lock_guard lock(mutex);
+        if (cut_) return false;
+        drive.advance(1e-3);
+        return true;
+      });
+    });
+  }
+  ~Wire() {
+    server_.stop();
+    thread_.join();
+  }
+  static ModbusAxisParameters parameters(int port) {
+    ModbusAxisParameters p;
+    p.port = port;
+    p.timeout_s = 2.0;
+    p.homing_speed_mps = 0.5;
+    p.homing_acceleration_mps2 = 5.0;
+    return p;
+  }
+
+  bool cycle(const AxisCommand& command = {}) {
+    now_ += Duration::milliseconds(10);
+    const bool connected = driver().read(now_, Duration::milliseconds(10)).ok();
+    wrote = driver().write(now_, Duration::milliseconds(10), command).ok();
+    return connected;
+  }
+  void run_until(AxisState state, int most = 3000) {
+    for (int i = 0; i < most && driver().reading().state != state; ++i) cycle();
+    ASSERT_EQ(driver().reading().state, state);
+  }
+  void make_ready() {
+    cycle();
+    ASSERT_TRUE(driver().enable(now_).ok());
+    run_until(AxisState::kHoming);
+    ASSERT_TRUE(driver().home(now_).ok());
+    run_until(AxisState::kReady);
+  }
+  template <class Change>
+  void at_drive(Change change) {
+    const std::lock_guard lock(mutex);
+    change(drive);
+  }
+  void cut(bool cut) {
+    const std::lock_guard lock(mutex);
+    cut_ = cut;
+  }
+  ModbusAxisDriver& driver() { return driver_; }
+  [[nodiscard]] Time now() const { return now_; }
+
+  SimulatedDrive drive;
+  std::mutex mutex;
+  bool wrote = false;
+
+ private:
+  DriveServer server_;
+  ModbusAxisDriver driver_;
+  std::thread thread_;
+  bool cut_ = false;
+  Time now_ = Time::from_seconds(1.0);
+};
+
+TEST(ModbusAxis, EnablesHomesAndMovesInBothModes) {
+  Wire wire;
+  wire.make_ready();
+  EXPECT_TRUE(wire.driver().reading().homed);
+  EXPECT_NEAR(wire.driver().reading().position_m, 0.0, 1e-4);
+  wire.cycle({AxisCommandMode::kProfile, 0.3, 0.0});
+  ASSERT_TRUE(wire.wrote);
+  wire.cycle();
+  EXPECT_EQ(wire.driver().reading().state, AxisState::kMoving);
+  wire.run_until(AxisState::kReady);
+  EXPECT_NEAR(wire.driver().reading().position_m, 0.3, 1e-3);
+  const MotionProfile profile = *plan_s_curve(kLimits, {0.3, 0.0, 0.0}, -0.2);
+  for (double t = 0.0; t < profile.duration_s() + 0.05; t += 0.005) {
+    wire.cycle({AxisCommandMode::kCyclic, profile.at(t).position_m, 0.0});
+    ASSERT_TRUE(wire.wrote);
+  }
+  wire.run_until(AxisState::kReady);
+  EXPECT_NEAR(wire.driver().reading().position_m, -0.2, 1e-3);
+  wire.cycle({AxisCommandMode::kProfile, 0.6, 0.0});
+  for (int i = 0; i < 20; ++i) wire.cycle();
+  wire.cycle({AxisCommandMode::kStop, 0.0, 0.0});
+  wire.run_until(AxisState::kReady);
+  EXPECT_LT(wire.driver().reading().position_m, 0.55);
+  ASSERT_TRUE(wire.driver().disable(wire.now()).ok());
+  wire.run_until(AxisState::kDisabled);
+}
+
+TEST(ModbusAxis, RefusesWhatTheAxisCannotDo) {
+  Wire wire;
+  wire.cycle({AxisCommandMode::kProfile, 0.1, 0.0});
+  EXPECT_FALSE(wire.wrote);  // not powered
+  EXPECT_FALSE(wire.driver().home(wire.now()).ok());
+  wire.make_ready();
+  wire.cycle({AxisCommandMode::kProfile, 0.7, 0.0});
+  EXPECT_FALSE(wire.wrote);
+  wire.cycle({AxisCommandMode::kCyclic, std::nan(""), 0.0});
+  EXPECT_FALSE(wire.wrote);
+  EXPECT_FALSE(wire.driver().enable(wire.now()).ok());
+  wire.cycle();
+  EXPECT_EQ(wire.driver().reading().state, AxisState::kReady);
+  EXPECT_NEAR(wire.driver().reading().position_m, 0.0, 1e-4);
+}
+
+TEST(ModbusAxis, AFaultInEachStateIsLatchedUntilReset) {
+  for (const Phase phase : kPhases) {
+    SCOPED_TRACE(static_cast<int>(phase));
+    Wire wire;
+    wire.cycle();
+    wire.at_drive([&](SimulatedDrive& d) {
+      d.force_phase(phase);
+      d.fault(0x2310);
+    });
+    if (phase == Phase::kFaulted) {
+      wire.at_drive([](SimulatedDrive& d) {
+        d.force_phase(Phase::kLocked);
+        d.fault(0x2310);
+      });
+    }
+    wire.run_until(AxisState::kFault);
+    EXPECT_EQ(wire.driver().reading().fault, DriveFault::kDrive);
+    EXPECT_FALSE(wire.driver().enable(wire.now()).ok());
+    ASSERT_TRUE(wire.driver().reset(wire.now()).ok());
+    for (int i = 0; i < 20; ++i) wire.cycle();
+    EXPECT_EQ(wire.driver().reading().state, AxisState::kFault);  // the cause lasts
+    wire.at_drive([](SimulatedDrive& d) { d.clear_cause(); });
+    wire.run_until(AxisState::kDisabled);
+    ASSERT_TRUE(wire.driver().enable(wire.now()).ok());
+    wire.run_until(AxisState::kHoming);
+  }
+}
+
+TEST(ModbusAxis, AConnectionCutInEachStateIsAnErrorUntilReset) {
+  for (const Phase phase : kPhases) {
+    SCOPED_TRACE(static_cast<int>(phase));
+    Wire wire;
+    wire.cycle();
+    wire.at_drive([&](SimulatedDrive& d) { d.force_phase(phase); });
+    wire.cut(true);
+    EXPECT_FALSE(wire.cycle());
+    EXPECT_FALSE(wire.wrote);
+    EXPECT_EQ(wire.driver().reading().state, AxisState::kFault);
+    EXPECT_EQ(wire.driver().reading().fault, DriveFault::kConnectionLost);
+    EXPECT_FALSE(wire.driver().reading().homed);
+    EXPECT_FALSE(wire.driver().reset(wire.now()).ok());
+    wire.cut(false);
+    EXPECT_FALSE(wire.cycle());  // not by itself
+    ASSERT_TRUE(wire.driver().reset(wire.now()).ok());
+    for (int i = 0; i < 50 && wire.driver().reading().state != AxisState::kDisabled; ++i) {
+      wire.cycle();
+    }
+    EXPECT_EQ(wire.driver().reading().state, AxisState::kDisabled);
+  }
+}
+
+TEST(ModbusAxis, EmergencyStopStopsAndLatches) {
+  Wire wire;
+  wire.make_ready();
+  wire.cycle({AxisCommandMode::kProfile, 0.6, 0.0});
+  for (int i = 0; i < 20; ++i) wire.cycle();
+  ASSERT_EQ(wire.driver().reading().state, AxisState::kMoving);
+  ASSERT_TRUE(wire.driver().emergency_stop(wire.now()).ok());
+  for (int i = 0; i < 50; ++i) wire.cycle();
+  EXPECT_EQ(wire.driver().reading().state, AxisState::kEmergencyStop);
+  EXPECT_EQ(wire.driver().reading().velocity_mps, 0.0);
+  EXPECT_LT(wire.driver().reading().position_m, 0.5);
+  wire.at_drive([](SimulatedDrive& d) { EXPECT_EQ(d.phase(), Phase::kQuickStop); });
+  EXPECT_FALSE(wire.driver().enable(wire.now()).ok());
+  ASSERT_TRUE(wire.driver().reset(wire.now()).ok());
+  wire.run_until(AxisState::kDisabled);
+}
+
+TEST(ModbusAxis, JamAndMissingReferenceAreReported) {
+  {
+    Wire wire;
+    wire.make_ready();
+    wire.at_drive([](SimulatedDrive& d) { d.set_jammed(true); });
+    wire.cycle({AxisCommandMode::kProfile, 0.3, 0.0});
+    wire.run_until(AxisState::kFault);
+    EXPECT_EQ(wire.driver().reading().fault, DriveFault::kFollowingError);
+  }
+  Wire wire;
+  wire.at_drive([](SimulatedDrive& d) { d.set_reference_missing(true); });
+  wire.cycle();
+  ASSERT_TRUE(wire.driver().enable(wire.now()).ok());
+  wire.run_until(AxisState::kHoming);
+  ASSERT_TRUE(wire.driver().home(wire.now()).ok());
+  wire.run_until(AxisState::kFault);
+  EXPECT_EQ(wire.driver().reading().fault, DriveFault::kHomingFailed);
+}
+
+TEST(ModbusAxis, NobodyThereIsAnError) {
+  SimulatedDrive drive;
+  int port = 0;
+  { port = DriveServer(drive, "127.0.0.1", 0).port(); }
+  ModbusAxisDriver driver(kLimits, Wire::parameters(port));
+  EXPECT_EQ(driver.read(Time(), Duration()).error().code, ErrorCode::kUnavailable);
+  EXPECT_EQ(driver.reading().fault, DriveFault::kConnectionLost);
+  ModbusAxisParameters huge = Wire::parameters(port);
+  huge.counts_per_m = 1e12;
+  EXPECT_THROW(ModbusAxisDriver(kLimits, huge), ConfigError);
+}
+
+}  // namespace
+}  // namespace furrow::actuation::cia402
