@@ -19,6 +19,7 @@ Status FootprintPlanner::plan(const PlanningProblem& problem, Plan& plan) {
   covered_.assign(prepared_.nodes.size(), 0);
   start_from_stems();
   improve_routes();
+  search_again();
   write_routes(problem, plan);
   return {};
 }
@@ -95,6 +96,36 @@ void FootprintPlanner::improve_routes() {
     if (!gained) {
       return;
     }
+  }
+}
+
+std::int64_t FootprintPlanner::weigh_all() {
+  covered_.assign(prepared_.nodes.size(), 0);
+  std::int64_t value = 0;
+  for (std::size_t a = 0; a < chains_.size(); ++a) {
+    value += cover_and_weigh(prepared_.starts[a], chains_[a]);
+  }
+  return value;
+}
+
+void FootprintPlanner::search_again() {
+  bool left = false;
+  for (std::uint32_t k = 0; k < covered_.size(); ++k) {
+    left = left || (covered_[k] == 0 && candidates_.coverable(k));
+  }
+  if (!left) {
+    return;
+  }
+  const std::int64_t first = weigh_all();
+  first_chains_.resize(chains_.size());
+  first_chains_.swap(chains_);
+  for (auto& chain : chains_) {
+    chain.clear();
+  }
+  covered_.assign(covered_.size(), 0);
+  improve_routes();
+  if (weigh_all() <= first) {
+    first_chains_.swap(chains_);
   }
 }
 

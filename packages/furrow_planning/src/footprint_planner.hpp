@@ -13,7 +13,8 @@ namespace furrow::planning {
 /// Plans sprays as discs that may be centred anywhere and treat several targets. Searches over the
 /// placements of SprayCandidates: from the exact joint routes of sprays on single stems, which also
 /// keep the travel low, by improving the axes one after the other, each best against what the
-/// others treat, until nothing is gained. Plan::weight_bound counts every target that some
+/// others treat, until nothing is gained. When that leaves targets, a second search starts from
+/// nothing, and the better one counts. Plan::weight_bound counts every target that some
 /// placement treats.
 class FootprintPlanner final : public RoutePlanner {
  public:
@@ -30,6 +31,9 @@ class FootprintPlanner final : public RoutePlanner {
 
   void start_from_stems();
   void improve_routes();
+  void search_again();
+  /// What all chains are worth together.
+  std::int64_t weigh_all();
   /// Adds (or takes away) what a chain covers.
   void cover(const std::vector<std::uint32_t>& chain, int change);
   /// The same as adding; returns what the chain is worth against what was covered before.
@@ -50,6 +54,7 @@ class FootprintPlanner final : public RoutePlanner {
   std::vector<std::vector<std::uint32_t>> classes_;
   std::vector<std::uint32_t> members_;
   std::vector<std::vector<std::uint32_t>> chains_;
+  std::vector<std::vector<std::uint32_t>> first_chains_;
   std::vector<std::uint32_t> trial_;
   std::vector<std::uint16_t> covered_;
   std::vector<Treated> treated_;                        ///< by node

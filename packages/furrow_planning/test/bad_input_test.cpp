@@ -77,7 +77,7 @@ TEST_P(EveryPlanner, SaysWhyEachTargetIsLeft) {
       {.id = 6, .p_F = {0.7, 0.0}, .weight = 0.05},  // below the threshold
       {.id = 7, .p_F = {0.7, 0.8}},                  // beyond the span
       {.id = 8, .p_F = {-0.1, 0.0}},                 // behind
-      {.id = 9, .p_F = {0.51, 0.21}},                // in the zone of the crop
+      {.id = 9, .p_F = {0.502, 0.202}},              // in the zone of the crop
       {.id = 10, .p_F = {0.001, 0.6}},               // too late to reach
   };
   auto parameters = parameters_for(GetParam());
