@@ -167,11 +167,11 @@ ledger::RunRecord from_msg(const furrow_msgs::msg::RunRecord& message,
     record.decisions.push_back(to_decision(decision, axes));
   }
   for (const auto& event : message.events()) {
-    // What the driver could not fire overrides what was planned.
+    // What a driver gave up stays given up, whatever the planner still hoped for afterwards.
     const auto reason = ledger::reason_from_string(event.event());
     if (!reason || *reason == ledger::Reason::kNone) continue;
     for (const std::int64_t track : event.track_ids()) {
-      record.decisions.push_back({.time = graph::from_msg(event.header().stamp()),
+      record.decisions.push_back({.time = graph::from_msg(message.header().stamp()),
                                   .track_id = track,
                                   .action = ledger::Action::kLeave,
                                   .reason = *reason,

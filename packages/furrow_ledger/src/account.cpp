@@ -21,6 +21,7 @@ struct Sprayed {
   double landed_m = 0.0;
   std::size_t aimed = kNobody;  ///< the nearest of those aimed at the plant
   double aimed_m = 0.0;
+  double error_m = 0.0;  ///< of that one's placement
 };
 
 auto key(const Spray& s) {
@@ -115,19 +116,23 @@ class Accountant {
       });
       if (!took_weed) ++ledger_.summary.sprays_without_weed;
 
-      const auto aim_at = [&](std::size_t plant) {
-        keep_nearest(sprayed_[plant].aimed, sprayed_[plant].aimed_m, s,
-                     (spray.p_F_m - plants_[plant].p_F_m).norm());
+      // How far the spray lies from the stem, but for what it was meant to lie beside the track.
+      const auto aim_at = [&](std::size_t plant, const Eigen::Vector2d& meant_F_m) {
+        Sprayed& sprayed = sprayed_[plant];
+        const Eigen::Vector2d offset_F_m = spray.p_F_m - plants_[plant].p_F_m;
+        keep_nearest(sprayed.aimed, sprayed.aimed_m, s, offset_F_m.norm());
+        if (sprayed.aimed == s) sprayed.error_m = (offset_F_m - meant_F_m).norm();
       };
       for (const std::int64_t id : spray.track_ids) {
         const auto track = track_of_id_.find(id);
         if (track == track_of_id_.end()) continue;
         const std::size_t plant = association_.plant_of_track[track->second];
-        if (plant != kNobody) aim_at(plant);
+        if (plant != kNobody) aim_at(plant, spray.aim_F_m - tracks_[track->second].p_F_m);
       }
       if (spray.track_ids.empty()) {
-        grid.for_each_within(spray.aim_F_m, parameters_.partial_radius_m,
-                             [&](std::size_t plant, double) { aim_at(plant); });
+        grid.for_each_within(
+            spray.aim_F_m, parameters_.partial_radius_m,
+            [&](std::size_t plant, double) { aim_at(plant, Eigen::Vector2d::Zero()); });
       }
     }
   }
@@ -216,8 +221,7 @@ class Accountant {
     for (std::size_t i = 0; i < plants_.size(); ++i) {
       const Sprayed& sprayed = sprayed_[i];
       if (plants_[i].kind != PlantKind::kWeed || sprayed.aimed == kNobody) continue;
-      const bool shared = sprays_[sprayed.aimed].track_ids.size() > 1;
-      ledger_.placement_errors_mm.push_back(shared ? aim_mm[sprayed.aimed] : sprayed.aimed_m * 1e3);
+      ledger_.placement_errors_mm.push_back(sprayed.error_m * 1e3);
     }
     std::sort(aim_mm.begin(), aim_mm.end());
     std::sort(ledger_.placement_errors_mm.begin(), ledger_.placement_errors_mm.end());

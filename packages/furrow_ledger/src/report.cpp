@@ -68,7 +68,7 @@ BarChart reasons_chart(const Summary& s) {
 
 Histogram error_chart(const Ledger& ledger) {
   Histogram chart;
-  chart.title = "Spray centre to stem";
+  chart.title = "Placement error of sprays";
   chart.x_label = "mm";
   chart.y_label = "weeds";
   chart.values = ledger.placement_errors_mm;

@@ -73,9 +73,11 @@ struct Summary {
   std::int64_t sprays = 0;
   std::int64_t sprays_without_weed = 0;  ///< no weed's stem within the partial radius
   std::vector<std::int64_t> sprays_by_axis;
-  /// Spray centre to stem, over the weeds that a spray was aimed at, hit or not (the nearest such
-  /// spray). A spray meant for several weeds is measured against its aim instead, since it is off
-  /// their stems on purpose. In mm; the deciles from minimum to maximum are eleven, or none.
+  /// How far a spray's centre lies from where it should be, over the weeds that one was aimed at,
+  /// hit or not (the nearest such spray): its offset from the stem, less the offset from the track
+  /// that was meant. So errors of vision, localization and actuation are in it, and the offset by
+  /// which a spray takes two weeds or spares a crop is not. In mm; the deciles from minimum to
+  /// maximum are eleven, or none.
   std::optional<double> placement_error_p50_mm;
   std::optional<double> placement_error_p95_mm;
   std::vector<double> placement_error_deciles_mm;
