@@ -47,8 +47,9 @@ struct Dataset {
   std::vector<AnnotatedImage> images;
 };
 
-/// Reads the pixels as stored in the file (an orientation tag is not applied: the masks are drawn
-/// on the stored pixels). Error: not there, no image, or not of the size the annotation names.
+/// Reads the pixels, turned as the file's EXIF orientation says (Carrot-Weed's masks are drawn on
+/// the turned images). Error: not there, not an image, or not of the size that the annotation
+/// names.
 [[nodiscard]] Status load_pixels(AnnotatedImage& image);
 
 /// Semantic labels, CV_8U: 0 soil, 1 weed, 2 crop; where instances overlap the later one counts.

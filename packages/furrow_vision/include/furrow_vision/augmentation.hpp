@@ -47,9 +47,15 @@ struct AugmentationDraw {
   double rotation_rad = 0.0;
 };
 
-/// Throws ConfigError (draw_augmentation) when parameters are out of range.
-[[nodiscard]] AugmentationDraw draw_augmentation(const AugmentationParameters& parameters,
-                                                 cv::Size image_size, Random& random);
+class Augmenter {
+ public:
+  /// Throws ConfigError when parameters are out of range.
+  explicit Augmenter(const AugmentationParameters& parameters);
+  [[nodiscard]] AugmentationDraw draw(cv::Size image_size, Random& random) const;
+
+ private:
+  AugmentationParameters parameters_;
+};
 
 /// Each on CV_8UC3, in place. The order in apply_augmentation is the order here.
 void shift_luminance(cv::Mat& bgr, double delta);
@@ -57,8 +63,10 @@ void scale_channels(cv::Mat& bgr, const std::array<double, 3>& gains);
 void blur_3x3(cv::Mat& bgr);
 void brighten_box(cv::Mat& bgr, const IlluminationBox& box);
 
-/// Geometry first (image, masks, stems, vegetation; instances that leave the image are dropped),
-/// then the photometric transforms. @pre image.bgr is loaded.
+/// Geometry first (image, masks, stems, vegetation; instances that leave the image are dropped,
+/// and what the image then lacks takes its mean colour), then the photometric transforms. Geometry
+/// clears pose, velocity and depth_path, which no longer fit. The pixels are changed on the spot:
+/// give a clone where the original is still needed. @pre image.bgr is loaded.
 void apply_augmentation(const AugmentationDraw& draw, AnnotatedImage& image);
 
 }  // namespace furrow::vision

@@ -82,4 +82,11 @@ constexpr int kMaxImageArea_px = 64 * 1024 * 1024;
 /// than a tenth have one, ground_distance_m.
 void measure_instance(const RgbdView& view, Instance& instance);
 
+/// Moves a stem that was found as a canopy's middle to the ground below it: leaves stand nearer to
+/// the camera, and appear farther from the image's centre than the stem's foot. Sets stem_px and
+/// stem_depth_m (of the ground). Takes the ground's depth from soil around the box and the canopy's
+/// from the mask; without depth in either, or where the canopy is not above the ground, nothing
+/// changes. @pre vegetation is CV_8U of the image's size, not zero where plants are.
+void place_stem_on_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance);
+
 }  // namespace furrow::vision

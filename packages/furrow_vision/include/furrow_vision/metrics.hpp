@@ -53,8 +53,8 @@ enum class ClassMode {
 
 /// Average precision by COCO's procedure (Lin et al. 2014; cocoeval): at each IoU threshold .50 to
 /// .95 detections in the order of their score take the free truth of greatest IoU; precision made
-/// monotone and read at recall 0, .01, ..., 1; all areas; 100 detections an image; crowd regions
-/// neither count nor punish. Classes without a truth do not count in the mean.
+/// monotone and read at recall 0, .01, ..., 1; all areas; 100 detections an image and class; crowd
+/// regions neither count nor punish. Classes without a truth do not count in the mean.
 class AveragePrecision {
  public:
   AveragePrecision(Overlap overlap, ClassMode mode) : overlap_(overlap), mode_(mode) {}
@@ -77,9 +77,14 @@ class AveragePrecision {
     std::vector<Outcome> outcomes;
     std::int64_t truths = 0;
   };
-  void add_class(const std::vector<const AnnotatedInstance*>& truth,
-                 std::vector<const Instance*> detections, std::vector<double> scores,
+  struct Scored {
+    const Instance* instance;
+    double score;
+  };
+  void add_class(std::vector<const AnnotatedInstance*> truth, std::vector<Scored> detections,
                  PerClass& into) const;
+  static std::array<double, kThresholds> class_precisions(const PerClass& counts);
+
   Overlap overlap_;
   ClassMode mode_;
   std::array<PerClass, 2> classes_{};

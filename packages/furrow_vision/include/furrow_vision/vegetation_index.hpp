@@ -1,11 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
 
 #include "furrow_core/parameters.hpp"
-#include "furrow_core/result.hpp"
 
 namespace furrow::vision {
 
@@ -16,30 +16,44 @@ enum class ColourKind {
 
 struct VegetationParameters {
   std::string colour = "auto";  ///< auto, natural, false_colour
-  /// Least threshold and least distance between the means of the two classes, in units of the
-  /// index (0..255): below it the image counts as soil only.
-  double min_threshold = 12.0;
-  double min_separation = 16.0;
+  double softening = 300.0;
+  double threshold_factor = 0.8;
+  double soil_deviations = 4.0;
+  double min_separation = 20.0;
+  double min_contrast = 1.2;
   std::int64_t median_px = 3;
   void visit(ParameterVisitor& v);
 };
 
-struct Vegetation {
-  cv::Mat mask;  ///< CV_8U, 255 vegetation
-  ColourKind colour = ColourKind::kNatural;
-  double threshold = 0.0;
-  bool found = false;  ///< false: the guards say soil only, and mask is zero
+/// The index of soil without colour; greener is above.
+constexpr int kIndexZero = 64;
+
+struct IndexImage {
+  cv::Mat index;                             ///< CV_8U
+  std::array<std::uint32_t, 256> histogram;  ///< of `index`
 };
+
+/// Excess green 2G - R - B (Woebbecke et al. 1995), divided by R + G + B + softening: between the
+/// plain one (softening great), which darkness dims, and that of chromatic coordinates (0), which
+/// darkness makes noisy. Scaled to agree with the plain one at medium brightness, plus kIndexZero,
+/// cut to 0..255. In false colour it is twice the difference of near infrared and red, softly
+/// normalised as the NDVI is. @pre bgr is CV_8UC3; softening >= 0.
+[[nodiscard]] IndexImage vegetation_index(const cv::Mat& bgr, double softening);
 
 /// False colour when blue and red agree on nearly all of a sample of pixels, yet green does not.
 [[nodiscard]] ColourKind detect_colour_kind(const cv::Mat& bgr);
 
-/// Excess green of chromatic coordinates, 2g - r - b (Woebbecke et al. 1995), scaled to 0..255
-/// with values below zero cut off. CV_8U. @pre bgr is CV_8UC3.
-[[nodiscard]] cv::Mat excess_green(const cv::Mat& bgr);
+struct Vegetation {
+  cv::Mat mask;  ///< CV_8U, 255 vegetation
+  cv::Mat index;
+  ColourKind colour = ColourKind::kNatural;
+  int threshold = 255;  ///< vegetation is above
+  bool found = false;   ///< false: soil only; mask is zero
+};
 
-/// Vegetation by the index and Otsu's threshold (Otsu 1979) with guards against images without
-/// plants. @pre bgr is CV_8UC3 and not empty.
+/// Vegetation by the index and Otsu's threshold (Otsu 1979), held above the soil's own spread and
+/// guarded against images without plants. An image that holds plants only is not told from soil.
+/// @pre bgr is CV_8UC3 and not empty.
 [[nodiscard]] Vegetation segment_vegetation(const cv::Mat& bgr,
                                             const VegetationParameters& parameters);
 

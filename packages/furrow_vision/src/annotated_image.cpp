@@ -1,0 +1,40 @@
+#include "furrow_vision/annotated_image.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace furrow::vision {
+
+Status load_pixels(AnnotatedImage& image) {
+  const std::string file = image.path.string();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(image.path, ignored)) {
+    return Error{ErrorCode::kNotFound, file + ": no such image"};
+  }
+  cv::Mat bgr;
+  try {
+    bgr = cv::imread(file, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    bgr.release();
+  }
+  if (bgr.empty()) return Error{ErrorCode::kParse, file + ": not an image, or a truncated one"};
+  if (image.width_px > 0 && bgr.size() != cv::Size(image.width_px, image.height_px)) {
+    return Error{ErrorCode::kParse, file + ": is " + std::to_string(bgr.cols) + "x" +
+                                        std::to_string(bgr.rows) + ", annotated as " +
+                                        std::to_string(image.width_px) + "x" +
+                                        std::to_string(image.height_px)};
+  }
+  image.width_px = bgr.cols;
+  image.height_px = bgr.rows;
+  image.bgr = std::move(bgr);
+  return {};
+}
+
+cv::Mat semantic_labels(const AnnotatedImage& image) {
+  cv::Mat labels = cv::Mat::zeros(image.height_px, image.width_px, CV_8U);
+  for (const AnnotatedInstance& instance : image.instances) {
+    labels(instance.box_px).setTo(instance.kind == SubClassKind::kCrop ? 2 : 1, instance.mask);
+  }
+  return labels;
+}
+
+}  // namespace furrow::vision

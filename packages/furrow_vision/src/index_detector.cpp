@@ -1,0 +1,272 @@
+#include "furrow_vision/index_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "check_ranges.hpp"
+#include "crop_rows.hpp"
+#include "plant_grouping.hpp"
+
+namespace furrow::vision {
+namespace {
+
+/// Fewer pixels than this a row spacing, and a row cannot be told.
+constexpr double kMinRowSpacing_px = 8.0;
+
+/// The plant of a full-resolution pixel: that of its cell, or of a neighbouring one where the cell
+/// holds too little vegetation to be one itself.
+int label_at(const cv::Mat& labels, int v, int u) {
+  const int own = labels.at<int>(v, u);
+  if (own != 0) return own;
+  for (int b = std::max(v - 1, 0); b <= std::min(v + 1, labels.rows - 1); ++b) {
+    for (int a = std::max(u - 1, 0); a <= std::min(u + 1, labels.cols - 1); ++a) {
+      if (labels.at<int>(b, a) != 0) return labels.at<int>(b, a);
+    }
+  }
+  return 0;
+}
+
+/// Boxes and masks of the plants at full resolution, from their labels at 1 / cell of it.
+std::vector<Instance> cut_instances(const cv::Mat& mask, const PlantGroups& groups, int cell) {
+  std::vector<Instance> instances(groups.stem_px.size());
+  std::vector<cv::Point> low(instances.size(), {mask.cols, mask.rows}), high(instances.size());
+  cv::Mat full = cv::Mat::zeros(mask.size(), CV_32S);
+  for (int v = 0; v < mask.rows; ++v) {
+    const auto* set = mask.ptr<std::uint8_t>(v);
+    int* out = full.ptr<int>(v);
+    const int cell_v = std::min(v / cell, groups.labels.rows - 1);
+    for (int u = 0; u < mask.cols; ++u) {
+      if (set[u] == 0) continue;
+      const int label = label_at(groups.labels, cell_v, std::min(u / cell, groups.labels.cols - 1));
+      if (label == 0) continue;
+      out[u] = label;
+      low[label - 1] = {std::min(low[label - 1].x, u), std::min(low[label - 1].y, v)};
+      high[label - 1] = {std::max(high[label - 1].x, u + 1), std::max(high[label - 1].y, v + 1)};
+    }
+  }
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (high[i].x == 0) continue;  // no pixel; an empty box
+    instances[i].box_px = cv::Rect(low[i], high[i]);
+    instances[i].mask = full(instances[i].box_px) == static_cast<int>(i) + 1;
+    // Centres of cells to centres of pixels.
+    instances[i].stem_px = groups.stem_px[i] * cell + Eigen::Vector2d::Constant(0.5 * (cell - 1));
+  }
+  std::erase_if(instances, [](const Instance& instance) { return instance.mask.empty(); });
+  return instances;
+}
+
+double log_normal(double value, double median, double log_sd) {
+  const double z = (std::log(value) - std::log(median)) / log_sd;
+  return -0.5 * z * z - std::log(log_sd);
+}
+
+}  // namespace
+
+IndexDetector::IndexDetector(const IndexDetectorParameters& parameters)
+    : parameters_(parameters),
+      classes_{{"crop", SubClassKind::kCrop}, {"weed", SubClassKind::kWeed}} {
+  check_ranges(parameters_);
+}
+
+IndexDetector::~IndexDetector() = default;
+
+void IndexDetector::reset() {
+  row_profile_.clear();
+  crop_row_u_px_.clear();
+}
+
+Result<std::vector<Instance>> IndexDetector::detect(const RgbdView& view) {
+  if (const Status status = check_view(view); !status) return status.error();
+  const IndexDetectorParameters& p = parameters_;
+  const auto& intrinsics = view.camera.intrinsics();
+  const double mm_per_px = 1000.0 * view.ground_distance_m / intrinsics.fx_px;
+  const double spacing_px = 1000.0 * p.row_spacing_m / mm_per_px;
+
+  const Vegetation vegetation = segment_vegetation(view.bgr, p.vegetation);
+  std::vector<Instance> plants;
+  if (vegetation.found) {
+    const int shorter = std::min(view.bgr.cols, view.bgr.rows);
+    const int cell = std::clamp(static_cast<int>(std::lround(p.grouping_resolution_mm / mm_per_px)),
+                                1, std::max(1, shorter / 16));
+    cv::Mat coarse = vegetation.mask;
+    if (cell > 1) {
+      cv::resize(vegetation.mask, coarse,
+                 {std::max(1, view.bgr.cols / cell), std::max(1, view.bgr.rows / cell)}, 0, 0,
+                 cv::INTER_AREA);
+      coarse = coarse >= 96;
+    }
+    const double cell_mm = cell * mm_per_px;
+    const PlantGroups groups =
+        group_plants(coarse, {.min_area_px = 0.7 * p.min_plant_area_mm2 / (cell_mm * cell_mm),
+                              .merge_gap_min_px = p.merge_gap_min_mm / cell_mm,
+                              .merge_gap_factor = p.merge_gap_factor,
+                              .merge_gap_max_px = p.merge_gap_max_mm / cell_mm,
+                              .closing_factor = p.closing_factor,
+                              .split_saddle_ratio = p.split_saddle_ratio,
+                              .split_min_area_px = p.split_min_area_mm2 / (cell_mm * cell_mm),
+                              .stem_kernel_factor = p.stem_kernel_factor,
+                              .max_plants = kMaxPlants});
+    plants = cut_instances(vegetation.mask, groups, cell);
+  }
+  for (Instance& plant : plants) {
+    measure_instance(view, plant);
+    place_stem_on_ground(view, vegetation.mask, plant);
+  }
+  std::erase_if(plants, [&](const Instance& i) { return i.area_mm2 < p.min_plant_area_mm2; });
+
+  if (!view.crop_row_u_px.empty()) {
+    crop_row_u_px_ = view.crop_row_u_px;
+  } else if (spacing_px >= kMinRowSpacing_px) {
+    std::vector<RowVote> votes;
+    for (const Instance& plant : plants) {
+      votes.push_back({plant.stem_px.x(), std::min(plant.area_mm2, p.crop_area_mm2)});
+    }
+    const double sd_px = 1000.0 * p.row_sd_m / mm_per_px;
+    add_row_votes(votes, spacing_px, sd_px, p.row_memory, row_profile_);
+    crop_row_u_px_ =
+        rows_of_profile(row_profile_, spacing_px, view.bgr.cols, 3.0 * sd_px, p.row_contrast_min);
+  } else {
+    crop_row_u_px_.clear();
+  }
+  for (Instance& plant : plants) {
+    plant.score = plant.area_mm2 / (plant.area_mm2 + p.min_plant_area_mm2);
+    plant.crop_probability = crop_probability_of(plant, view);
+    plant.class_scores = {plant.crop_probability, 1.0 - plant.crop_probability};
+  }
+  return plants;
+}
+
+double IndexDetector::crop_probability_of(const Instance& plant, const RgbdView& view) const {
+  const IndexDetectorParameters& p = parameters_;
+  double log_odds = std::log(p.crop_share / (1.0 - p.crop_share));
+  double size_evidence = log_normal(plant.area_mm2, p.crop_area_mm2, p.crop_area_log_sd) -
+                         log_normal(plant.area_mm2, p.weed_area_mm2, p.weed_area_log_sd);
+  // Of a plant that is cut off only a part is seen, and above the crop's usual size a plant is not
+  // less of a crop.
+  if (plant.touches_border) size_evidence = std::max(size_evidence, 0.0);
+  log_odds += size_evidence;
+  if (!crop_row_u_px_.empty()) {
+    double nearest_px = std::abs(plant.stem_px.x() - crop_row_u_px_.front());
+    for (const double u : crop_row_u_px_) {
+      nearest_px = std::min(nearest_px, std::abs(plant.stem_px.x() - u));
+    }
+    const double off_m =
+        nearest_px * view.ground_distance_m / view.camera.intrinsics().fx_px / p.row_sd_m;
+    constexpr double kOffRow = 0.02;  // share of crops that stand anywhere
+    const double density_on_row =
+        std::exp(-0.5 * off_m * off_m) / (p.row_sd_m * std::sqrt(2.0 * std::numbers::pi));
+    const double density_anywhere = 1.0 / p.row_spacing_m;
+    log_odds += std::log((1.0 - kOffRow) * density_on_row / density_anywhere + kOffRow);
+  }
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+void IndexDetectorParameters::visit(ParameterVisitor& v) {
+  vegetation.visit(v);
+  v.visit({.name = "grouping_resolution_mm",
+           .unit = "mm",
+           .description = "Cell at which pieces are put together into plants",
+           .min = 0.1,
+           .max = 20.0},
+          grouping_resolution_mm);
+  v.visit({.name = "min_plant_area_mm2",
+           .unit = "mm2",
+           .description = "Smaller ones are taken for specks",
+           .min = 0.1,
+           .max = 1e5},
+          min_plant_area_mm2);
+  v.visit({.name = "merge_gap_min_mm",
+           .unit = "mm",
+           .description = "Pieces of any size with a gap below this are one plant",
+           .min = 0.0,
+           .max = 500.0},
+          merge_gap_min_mm);
+  v.visit({.name = "merge_gap_factor",
+           .description = "Added to that gap, as a share of the root of the smaller one's area",
+           .min = 0.0,
+           .max = 5.0},
+          merge_gap_factor);
+  v.visit({.name = "merge_gap_max_mm",
+           .unit = "mm",
+           .description = "Pieces farther apart than this are never one plant",
+           .min = 0.0,
+           .max = 500.0},
+          merge_gap_max_mm);
+  v.visit({.name = "closing_factor",
+           .description = "Deviation of the Gauss filter that closes a canopy before its thickest "
+                          "places are sought, over the root of its area",
+           .min = 0.0,
+           .max = 1.0},
+          closing_factor);
+  v.visit({.name = "split_saddle_ratio",
+           .description = "Two thick places with a saddle below this share of the thinner one are "
+                          "two plants",
+           .min = 0.0,
+           .max = 1.0},
+          split_saddle_ratio);
+  v.visit({.name = "split_min_area_mm2",
+           .unit = "mm2",
+           .description = "A smaller part is a leaf, not a plant of its own",
+           .min = 0.0,
+           .max = 1e6},
+          split_min_area_mm2);
+  v.visit({.name = "stem_kernel_factor",
+           .description = "Deviation of the kernel that seeks the stem as the canopy's densest "
+                          "place, over the root of its area",
+           .min = 0.1,
+           .max = 100.0},
+          stem_kernel_factor);
+  v.visit({.name = "row_spacing_m",
+           .unit = "m",
+           .description = "Distance of the crop rows",
+           .min = 0.02,
+           .max = 10.0},
+          row_spacing_m);
+  v.visit({.name = "row_sd_m",
+           .unit = "m",
+           .description = "Standard deviation of a crop's stem, as seen, across its row",
+           .min = 0.001,
+           .max = 1.0},
+          row_sd_m);
+  v.visit({.name = "row_memory",
+           .description = "Share of the earlier frames in the estimate of the rows",
+           .min = 0.0,
+           .max = 0.999},
+          row_memory);
+  v.visit({.name = "row_contrast_min",
+           .description = "Rows count when their evidence is this often the mean one",
+           .min = 1.0,
+           .max = 100.0},
+          row_contrast_min);
+  v.visit({.name = "crop_share",
+           .description = "Share of crops among the plants, before anything is seen",
+           .min = 0.001,
+           .max = 0.999},
+          crop_share);
+  v.visit({.name = "crop_area_mm2",
+           .unit = "mm2",
+           .description = "Median leaf area of a crop",
+           .min = 1.0,
+           .max = 1e6},
+          crop_area_mm2);
+  v.visit({.name = "crop_area_log_sd",
+           .description = "Spread of the logarithm of a crop's area",
+           .min = 0.05,
+           .max = 5.0},
+          crop_area_log_sd);
+  v.visit({.name = "weed_area_mm2",
+           .unit = "mm2",
+           .description = "Median leaf area of a weed",
+           .min = 1.0,
+           .max = 1e6},
+          weed_area_mm2);
+  v.visit({.name = "weed_area_log_sd",
+           .description = "Spread of the logarithm of a weed's area",
+           .min = 0.05,
+           .max = 5.0},
+          weed_area_log_sd);
+}
+
+}  // namespace furrow::vision
