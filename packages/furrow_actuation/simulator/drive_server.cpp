@@ -37,17 +37,18 @@ std::vector<std::uint8_t> answer(SimulatedDrive& drive, const std::vector<std::u
   if (request[7] != 43 || request.size() < 9 || request[8] != 13) return refuse(1);
   if (request.size() < kDataByte || request[18] < 1 || request[18] > 4) return refuse(3);
   const bool write = request[9] == 1;
-  const std::size_t count = request[18];
-  if (request.size() != kDataByte + (write ? count : 0)) return refuse(3);
+  const int count = request[18];
+  if (request.size() != kDataByte + static_cast<std::size_t>(write ? count : 0)) return refuse(3);
   const auto index = static_cast<std::uint16_t>(request[12] * 256 + request[13]);
   const std::uint8_t sub = request[14];
   reply.assign(request.begin(), request.begin() + kDataByte);
   if (write) {
     std::int64_t value = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      value += static_cast<std::int64_t>(request[kDataByte + i]) << (8 * i);
+    std::int64_t scale = 1;
+    for (int i = 0; i < count; ++i, scale *= 256) {
+      value += scale * request[kDataByte + static_cast<std::size_t>(i)];
     }
-    if (value >= std::int64_t{1} << (8 * count - 1)) value -= std::int64_t{1} << (8 * count);
+    if (value >= scale / 2) value -= scale;  // two's complement
     const auto outcome = drive.write(index, sub, static_cast<std::int32_t>(value));
     if (outcome != SimulatedDrive::Answer::kOk) {
       reply.resize(kUnitByte + 1);
@@ -61,7 +62,7 @@ std::vector<std::uint8_t> answer(SimulatedDrive& drive, const std::vector<std::u
     reply.resize(kUnitByte + 1);
     return refuse(2);
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i) {
     reply.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(*value) >> (8 * i)));
   }
   return finish();

@@ -129,34 +129,28 @@ void SimulatedDrive::take_controlword(std::uint16_t word) {
   }
   if (phase_ == Phase::kStarting || phase_ == Phase::kReacting) return;
   const bool powered = phase_ == Phase::kOperating || phase_ == Phase::kQuickStop;
-  if (!bit(word, 1)) {  // disable voltage: from every state, the motor runs out
+  if (!bit(word, 1)) {  // disable voltage, from every state
     phase_ = Phase::kLocked;
   } else if (!bit(word, 2)) {  // quick stop
-    if (powered) {
-      phase_ = Phase::kQuickStop;
-    } else {
-      phase_ = Phase::kLocked;
-    }
+    phase_ = powered ? Phase::kQuickStop : Phase::kLocked;
   } else if (phase_ == Phase::kQuickStop) {
     return;                    // leaves by disable voltage only
   } else if (!bit(word, 0)) {  // shutdown
     phase_ = Phase::kPrepared;
-  } else if (phase_ == Phase::kPrepared) {
-    phase_ = Phase::kPoweredOn;
+  } else if (phase_ == Phase::kPrepared || (phase_ == Phase::kOperating && !bit(word, 3))) {
+    phase_ = Phase::kPoweredOn;  // switch on; disable operation
   } else if (phase_ == Phase::kPoweredOn && bit(word, 3)) {
     phase_ = Phase::kOperating;
     demand_ = target_ = position_;
     parameters_[{0x607A, 0}] = static_cast<std::int32_t>(std::lround(position_));
-  } else if (phase_ == Phase::kOperating && !bit(word, 3)) {  // disable operation
-    phase_ = Phase::kPoweredOn;
   } else if (phase_ == Phase::kOperating) {
-    if (bit(word, 4) && !bit(before, 4)) start_action(word);
+    if (bit(word, 4) && !bit(before, 4)) start_action();
     if (!bit(word, 4)) acknowledged_ = false;
   }
   if (phase_ != Phase::kOperating) homing_ = false;
 }
 
-void SimulatedDrive::start_action(std::uint16_t) {
+void SimulatedDrive::start_action() {
   if (mode_ == 1) {
     target_ = parameter(0x607A);
     acknowledged_ = true;
@@ -197,7 +191,8 @@ void SimulatedDrive::move_towards(double target, double speed, double accelerati
 
 void SimulatedDrive::advance(double seconds) {
   constexpr double kStep = 1e-4;
-  for (double done = 0.0; done < seconds - kStep / 2.0; done += kStep) {
+  const auto steps = static_cast<int>(std::lround(seconds / kStep));
+  for (int step = 0; step < steps; ++step) {
     switch (phase_) {
       case Phase::kStarting:
         phase_ = Phase::kLocked;

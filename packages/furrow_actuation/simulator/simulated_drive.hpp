@@ -44,7 +44,7 @@ class SimulatedDrive {
 
  private:
   void take_controlword(std::uint16_t word);
-  void start_action(std::uint16_t word);
+  void start_action();
   void move_towards(double target, double speed, double acceleration, double h);
   void brake(double deceleration, double h);
   [[nodiscard]] std::uint16_t statusword() const;

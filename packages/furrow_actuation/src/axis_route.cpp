@@ -143,8 +143,8 @@ AxisController::Landing AxisController::predict_landing(Time middle) const {
   const double off_m = reading_->position_m - motion_at(reading_->stamp).position_m;
   const auto land = [&](Time time) {
     const MotionState state = motion_at(time);
-    return landing_point_F(extrapolate(*base_, time), axis_, droplet_, state.position_m + off_m,
-                           state.velocity_mps);
+    return landing_point(extrapolate(*base_, time), axis_, droplet_, state.position_m + off_m,
+                         state.velocity_mps);
   };
   const Duration half_dwell = Duration::seconds(parameters_.dwell_s / 2.0);
   const double speed = std::max({std::abs(motion_at(middle - half_dwell).velocity_mps),

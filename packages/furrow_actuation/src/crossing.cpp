@@ -8,7 +8,7 @@ namespace {
 constexpr double kGravity_mps2 = 9.80665;
 
 /// The velocity over ground, in B, of a point fixed to the base.
-Eigen::Vector2d point_velocity_B(const Twist2& twist, const Eigen::Vector2d& p_B) {
+Eigen::Vector2d point_velocity(const Twist2& twist, const Eigen::Vector2d& p_B) {
   return {twist.vx_mps - twist.yaw_rate_radps * p_B.y(),
           twist.vy_mps + twist.yaw_rate_radps * p_B.x()};
 }
@@ -37,17 +37,17 @@ double fall_time_s(double height_m, double exit_speed_mps) {
   return (std::sqrt(u * u + 2.0 * kGravity_mps2 * height_m) - u) / kGravity_mps2;
 }
 
-Eigen::Vector2d nozzle_velocity_F(const BaseState& base, const geometry::AxisModel& axis,
-                                  double q_m, double q_velocity_mps) {
+Eigen::Vector2d nozzle_velocity(const BaseState& base, const geometry::AxisModel& axis, double q_m,
+                                double q_velocity_mps) {
   const Eigen::Vector2d p_B = axis.nozzle_position_B(q_m).head<2>();
   return rotate(base.X_FB.heading_rad,
-                point_velocity_B(base.twist_B, p_B) + q_velocity_mps * axis.direction_B.head<2>());
+                point_velocity(base.twist_B, p_B) + q_velocity_mps * axis.direction_B.head<2>());
 }
 
-Eigen::Vector2d landing_point_F(const BaseState& base, const geometry::AxisModel& axis,
-                                const DropletModel& droplet, double q_m, double q_velocity_mps) {
+Eigen::Vector2d landing_point(const BaseState& base, const geometry::AxisModel& axis,
+                              const DropletModel& droplet, double q_m, double q_velocity_mps) {
   return geometry::transform(base.X_FB, axis.nozzle_position_B(q_m).head<2>()) +
-         droplet.carry * droplet.fall_s * nozzle_velocity_F(base, axis, q_m, q_velocity_mps);
+         droplet.carry * droplet.fall_s * nozzle_velocity(base, axis, q_m, q_velocity_mps);
 }
 
 std::optional<Crossing> find_crossing(const BaseState& base, const geometry::AxisModel& axis,
@@ -66,11 +66,11 @@ std::optional<Crossing> find_crossing(const BaseState& base, const geometry::Axi
   for (int i = 0; i < kMaxIterations; ++i) {
     const BaseState at = extrapolate(base, base.stamp + Duration::seconds(dt));
     const Eigen::Vector2d p_B = geometry::transform(geometry::inverse(at.X_FB), p_F);
-    crossing.q_m = direction.dot(p_B - p_BN0 - flight_s * point_velocity_B(at.twist_B, p_BN0)) /
+    crossing.q_m = direction.dot(p_B - p_BN0 - flight_s * point_velocity(at.twist_B, p_BN0)) /
                        direction.squaredNorm() -
                    flight_s * q_velocity_mps;
     const Eigen::Vector2d nozzle_B = p_BN0 + crossing.q_m * direction;
-    const Eigen::Vector2d velocity_B = point_velocity_B(at.twist_B, nozzle_B);
+    const Eigen::Vector2d velocity_B = point_velocity(at.twist_B, nozzle_B);
     crossing.closing_speed_mps = normal.dot(velocity_B);
     if (!(crossing.closing_speed_mps >= parameters.min_speed_mps)) return std::nullopt;
     const double step =

@@ -129,7 +129,7 @@ Status ModbusAxisDriver::connect() {
   }
   mode_ = 0;
   controlword_ = 0;
-  if (const Status status = configure(); !status) {
+  if (Status status = configure(); !status) {
     lose_connection();
     return status;
   }
@@ -144,7 +144,7 @@ Status ModbusAxisDriver::configure() {
        {kProfileAcceleration, counts(limits_.max_acceleration_mps2)},
        {kProfileDeceleration, counts(limits_.max_acceleration_mps2)}}};
   for (const auto& [object, value] : settings) {
-    if (const Status status = set(object, value); !status) return status;
+    if (Status status = set(object, value); !status) return status;
   }
   return {};
 }
@@ -193,7 +193,7 @@ Result<std::int32_t> ModbusAxisDriver::exchange(const Telegram& request, const O
 }
 
 Status ModbusAxisDriver::send_controlword(std::uint16_t word) {
-  if (const Status status = set(kControlword, word); !status) return status;
+  if (Status status = set(kControlword, word); !status) return status;
   controlword_ = word;
   return {};
 }
@@ -201,7 +201,7 @@ Status ModbusAxisDriver::send_controlword(std::uint16_t word) {
 Status ModbusAxisDriver::ensure_mode(Mode mode) {
   const auto wanted = static_cast<std::int32_t>(mode);
   if (mode_ == wanted) return {};
-  if (const Status status = set(kModeOfOperation, wanted); !status) return status;
+  if (Status status = set(kModeOfOperation, wanted); !status) return status;
   mode_ = wanted;
   return {};
 }
@@ -209,7 +209,7 @@ Status ModbusAxisDriver::ensure_mode(Mode mode) {
 Status ModbusAxisDriver::read(Time now, Duration) {
   if (lost_) return unavailable("the connection to the drive was lost");
   if (!connection_) {
-    if (const Status status = connect(); !status) return status;
+    if (Status status = connect(); !status) return status;
   }
   const auto statusword = get(kStatusword);
   if (!statusword) return statusword.error();
@@ -276,7 +276,7 @@ Status ModbusAxisDriver::write(Time, Duration, const AxisCommand& command) {
   constexpr std::uint16_t kStateBits = 0x008F;
   const bool operating = powered() && wanted == command::kEnableOperation;
   if (!operating || (controlword_ & kStateBits) != wanted) {
-    if (const Status status = send_controlword(wanted); !status) return status;
+    if (Status status = send_controlword(wanted); !status) return status;
   }
   if (command.mode == AxisCommandMode::kNone) return {};
   if (reading_.state != AxisState::kReady && reading_.state != AxisState::kMoving) {
@@ -294,11 +294,11 @@ Status ModbusAxisDriver::write(Time, Duration, const AxisCommand& command) {
     return Error{ErrorCode::kOutOfRange, "the commanded position lies outside the limits"};
   }
   const bool cyclic = command.mode == AxisCommandMode::kCyclic;
-  const Status mode = ensure_mode(cyclic ? Mode::kCyclicPosition : Mode::kProfilePosition);
+  Status mode = ensure_mode(cyclic ? Mode::kCyclicPosition : Mode::kProfilePosition);
   if (!mode) return mode;
   if (cyclic) {
     if (controlword_ != command::kEnableOperation) {
-      const Status status = send_controlword(command::kEnableOperation);
+      Status status = send_controlword(command::kEnableOperation);
       if (!status) return status;
     }
     return set(kTargetPosition, counts(command.position_m));
@@ -359,7 +359,7 @@ Status ModbusAxisDriver::emergency_stop(Time) {
 Status ModbusAxisDriver::reset(Time now) {
   if (lost_) {
     lost_ = false;
-    if (const Status status = read(now, Duration()); !status) return status;
+    if (Status status = read(now, Duration()); !status) return status;
   }
   emergency_stop_ = false;
   homing_failed_ = false;

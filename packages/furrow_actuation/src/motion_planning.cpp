@@ -149,7 +149,7 @@ bool append_braked(MotionProfile& profile, const MotionLimits& limits, bool pass
 
 Result<MotionProfile> plan_trapezoid(const MotionLimits& limits, const MotionState& start,
                                      double target_m) {
-  if (const Status status = check(limits, start, target_m); !status) return status.error();
+  if (Status status = check(limits, start, target_m); !status) return status.error();
   const double a = limits.max_acceleration_mps2;
   const double v0 = start.velocity_mps;
   const double stop_m = start.position_m + v0 * std::abs(v0) / (2.0 * a);
@@ -170,7 +170,7 @@ Result<MotionProfile> plan_trapezoid(const MotionLimits& limits, const MotionSta
 
 Result<MotionProfile> plan_s_curve(const MotionLimits& limits, const MotionState& start,
                                    double target_m) {
-  if (const Status status = check(limits, start, target_m); !status) return status.error();
+  if (Status status = check(limits, start, target_m); !status) return status.error();
   if (std::abs(start.acceleration_mps2) > limits.max_acceleration_mps2 * (1.0 + kTolerance)) {
     return Error{ErrorCode::kOutOfRange, "the start exceeds the acceleration limit"};
   }

@@ -164,7 +164,7 @@ Status SimulatedAxisDriver::read(Time now, Duration) {
 }
 
 Status SimulatedAxisDriver::write(Time now, Duration period, const AxisCommand& command) {
-  if (const Status status = refuse_unless_connected(); !status) return status;
+  if (Status status = refuse_unless_connected(); !status) return status;
   if (command.mode == AxisCommandMode::kNone) return {};
   if (reading_.state != AxisState::kReady && reading_.state != AxisState::kMoving) {
     return unavailable("the simulated drive is not ready");
@@ -205,7 +205,7 @@ Status SimulatedAxisDriver::write(Time now, Duration period, const AxisCommand& 
 }
 
 Status SimulatedAxisDriver::enable(Time) {
-  if (const Status status = refuse_unless_connected(); !status) return status;
+  if (Status status = refuse_unless_connected(); !status) return status;
   if (reading_.state != AxisState::kDisabled) {
     return unavailable("the simulated drive is enabled, faulted or in emergency stop");
   }
@@ -215,7 +215,7 @@ Status SimulatedAxisDriver::enable(Time) {
 }
 
 Status SimulatedAxisDriver::disable(Time now) {
-  if (const Status status = refuse_unless_connected(); !status) return status;
+  if (Status status = refuse_unless_connected(); !status) return status;
   stop_from(now);
   powered_ = false;
   if (reading_.state != AxisState::kFault && reading_.state != AxisState::kEmergencyStop) {
@@ -225,7 +225,7 @@ Status SimulatedAxisDriver::disable(Time now) {
 }
 
 Status SimulatedAxisDriver::home(Time now) {
-  if (const Status status = refuse_unless_connected(); !status) return status;
+  if (Status status = refuse_unless_connected(); !status) return status;
   if (!powered_ || reading_.state == AxisState::kFault ||
       reading_.state == AxisState::kEmergencyStop || reading_.state == AxisState::kMoving) {
     return unavailable("the simulated drive cannot home now");
@@ -245,14 +245,14 @@ Status SimulatedAxisDriver::home(Time now) {
 }
 
 Status SimulatedAxisDriver::emergency_stop(Time now) {
-  if (const Status status = refuse_unless_connected(); !status) return status;
+  if (Status status = refuse_unless_connected(); !status) return status;
   if (reading_.state != AxisState::kEmergencyStop) stop_from(now);
   reading_.state = AxisState::kEmergencyStop;
   return {};
 }
 
 Status SimulatedAxisDriver::reset(Time now) {
-  if (const Status status = refuse_unless_connected(); !status) return status;
+  if (Status status = refuse_unless_connected(); !status) return status;
   if (reading_.state != AxisState::kFault && reading_.state != AxisState::kEmergencyStop) {
     return {};
   }

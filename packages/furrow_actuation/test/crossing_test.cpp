@@ -96,7 +96,7 @@ TEST(Crossing, DropletsLandOnTheTarget) {
     const Eigen::Vector2d landing_F = nozzle_F(0.0) + droplet.carry * droplet.fall_s * velocity_F;
     ASSERT_LT((landing_F - p_F).norm(), 1e-6);
     const BaseState at = extrapolate(base, crossing->emission);
-    ASSERT_LT((landing_point_F(at, axis, droplet, crossing->q_m, speed) - p_F).norm(), 1e-7);
+    ASSERT_LT((landing_point(at, axis, droplet, crossing->q_m, speed) - p_F).norm(), 1e-7);
   }
   EXPECT_GT(found, 2900);
 }

@@ -40,14 +40,13 @@ struct DropletModel {
 };
 
 /// The velocity of the nozzle over ground, in F.
-[[nodiscard]] Eigen::Vector2d nozzle_velocity_F(const BaseState& base,
-                                                const geometry::AxisModel& axis, double q_m,
-                                                double q_velocity_mps);
-/// Where droplets land that leave the nozzle now: `base` at the time of emission, axis at q.
-[[nodiscard]] Eigen::Vector2d landing_point_F(const BaseState& base,
-                                              const geometry::AxisModel& axis,
-                                              const DropletModel& droplet, double q_m,
+[[nodiscard]] Eigen::Vector2d nozzle_velocity(const BaseState& base,
+                                              const geometry::AxisModel& axis, double q_m,
                                               double q_velocity_mps);
+/// Where droplets land that leave the nozzle now: `base` at the time of emission, axis at q.
+[[nodiscard]] Eigen::Vector2d landing_point(const BaseState& base, const geometry::AxisModel& axis,
+                                            const DropletModel& droplet, double q_m,
+                                            double q_velocity_mps);
 
 /// When droplets must leave the nozzle, and from which axis position, to land on a target.
 struct Crossing {
