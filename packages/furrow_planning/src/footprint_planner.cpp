@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "passing_fire.hpp"
+
 namespace furrow::planning {
 
 Status FootprintPlanner::plan(const PlanningProblem& problem, Plan& plan) {
@@ -209,36 +211,92 @@ void FootprintPlanner::write_routes(const PlanningProblem& problem, Plan& plan) 
       }
     }
     centre_route(start, a);
-    double y_m = start.y_m;
-    auto& route = plan.routes[a];
-    for (std::size_t s = 0; s < aims.size(); ++s) {
-      Stop stop{.aim_F = aims[s],
-                .first_target = static_cast<std::uint32_t>(plan.treated.size()),
-                .target_count = static_cast<std::uint32_t>(stop_nodes_[s].size())};
-      time_stop(start, prepared_.robot_y_m, route.empty() ? nullptr : &route.back(), stop);
-      route.push_back(stop);
-      const auto distance = [&](std::uint32_t k) {
-        const Node& node = prepared_.nodes[k];
-        return (Eigen::Vector2d(node.x_m, node.y_m) - aims[s]).squaredNorm();
-      };
-      std::sort(stop_nodes_[s].begin(), stop_nodes_[s].end(),
-                [&](std::uint32_t i, std::uint32_t j) {
-                  const double di = distance(i);
-                  const double dj = distance(j);
-                  return di != dj ? di < dj : i < j;
-                });
-      for (const std::uint32_t k : stop_nodes_[s]) {
-        const Node& node = prepared_.nodes[k];
-        plan.treated.push_back(problem.targets[node.target].id);
-        plan.decisions[node.target].decision = Decision::kTreat;
-        plan.decisions[node.target].axis = static_cast<std::int32_t>(a);
-        plan.weight += node.weight;
-      }
-      plan.travel_m += std::abs(aims[s].y() - y_m);
-      y_m = aims[s].y();
-    }
+    write_route(problem, a, plan);
   }
   explain_left(plan);
+}
+
+void FootprintPlanner::write_route(const PlanningProblem& problem, std::size_t axis, Plan& plan) {
+  const Start& start = prepared_.starts[axis];
+  const auto& aims = aims_[axis];
+  double y_m = start.y_m;
+  Stop last;
+  for (std::size_t s = 0; s < aims.size(); ++s) {
+    Stop stop{.aim_F = aims[s]};
+    time_stop(start, prepared_.robot_y_m, s == 0 ? nullptr : &last, stop);
+    if (parameters_.fire_while_moving) {
+      write_passing(problem, axis, s == 0 ? nullptr : &last, stop, plan);
+      const auto& route = plan.routes[axis];
+      if (!route.empty() && route.back().moving) {
+        stop.depart_x_m = route.back().depart_x_m;
+      }
+    }
+    write_stop(problem, axis, stop, stop_nodes_[s], plan);
+    plan.travel_m += std::abs(aims[s].y() - y_m);
+    y_m = aims[s].y();
+    last = stop;
+  }
+}
+
+void FootprintPlanner::write_passing(const PlanningProblem& problem, std::size_t axis,
+                                     const Stop* from, const Stop& to, Plan& plan) {
+  const Start& start = prepared_.starts[axis];
+  Leg leg{.from = {start.x_m, start.y_m}, .to = to.aim_F};
+  if (from != nullptr) {
+    leg.from = from->aim_F;
+  }
+  if (from != nullptr || start.after_spray) {
+    leg.dwell_after_from_m = 0.5 * parameters_.dwell_s * prepared_.speed_mps;
+  }
+  const double radius_m = candidates_.radius_m();
+  const auto& nodes = prepared_.nodes;
+  auto node = std::lower_bound(nodes.begin(), nodes.end(), leg.from.x() - radius_m,
+                               [](const Node& n, double value) { return n.x_m < value; });
+  for (; node != nodes.end() && node->x_m <= leg.to.x() + radius_m; ++node) {
+    const auto k = static_cast<std::uint32_t>(node - nodes.begin());
+    if (treated_[k].axis >= 0) {
+      continue;
+    }
+    const auto spray = passing_spray(start.transition, leg, {node->x_m, node->y_m}, radius_m);
+    if (!spray || !start.spans(spray->aim.y()) ||
+        !candidates_.allowed(spray->aim.x(), spray->aim.y())) {
+      continue;
+    }
+    treated_[k].axis = static_cast<std::int32_t>(axis);
+    passing_nodes_.assign(1, k);
+    const double robot_x_m = spray->aim.x() - start.offset_x_m;
+    write_stop(problem, axis,
+               {.aim_F = spray->aim,
+                .robot_x_m = robot_x_m,
+                .depart_x_m = robot_x_m - spray->departure_m,
+                .position_m = spray->aim.y() - prepared_.robot_y_m,
+                .moving = true},
+               passing_nodes_, plan);
+    return;
+  }
+}
+
+void FootprintPlanner::write_stop(const PlanningProblem& problem, std::size_t axis, Stop stop,
+                                  std::vector<std::uint32_t>& nodes, Plan& plan) {
+  stop.first_target = static_cast<std::uint32_t>(plan.treated.size());
+  stop.target_count = static_cast<std::uint32_t>(nodes.size());
+  plan.routes[axis].push_back(stop);
+  const auto distance = [&](std::uint32_t k) {
+    const Node& node = prepared_.nodes[k];
+    return (Eigen::Vector2d(node.x_m, node.y_m) - stop.aim_F).squaredNorm();
+  };
+  std::sort(nodes.begin(), nodes.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const double di = distance(i);
+    const double dj = distance(j);
+    return di != dj ? di < dj : i < j;
+  });
+  for (const std::uint32_t k : nodes) {
+    const Node& node = prepared_.nodes[k];
+    plan.treated.push_back(problem.targets[node.target].id);
+    plan.decisions[node.target].decision = Decision::kTreat;
+    plan.decisions[node.target].axis = static_cast<std::int32_t>(axis);
+    plan.weight += node.weight;
+  }
 }
 
 void FootprintPlanner::explain_left(Plan& plan) const {

@@ -44,6 +44,12 @@ class FootprintPlanner final : public RoutePlanner {
   /// Moves the sprays of a route towards the middle of what they treat, as far as its neighbours,
   /// the span and the zones allow.
   void centre_route(const Start& start, std::size_t axis);
+  /// The sprays of one axis, in order, with what is fired in passing on the way to each.
+  void write_route(const PlanningProblem& problem, std::size_t axis, Plan& plan);
+  void write_passing(const PlanningProblem& problem, std::size_t axis, const Stop* from,
+                     const Stop& to, Plan& plan);
+  void write_stop(const PlanningProblem& problem, std::size_t axis, Stop stop,
+                  std::vector<std::uint32_t>& nodes, Plan& plan);
   void explain_left(Plan& plan) const;
 
   PlannerParameters parameters_;
@@ -57,6 +63,7 @@ class FootprintPlanner final : public RoutePlanner {
   std::vector<std::vector<std::uint32_t>> first_chains_;
   std::vector<std::uint32_t> trial_;
   std::vector<std::uint16_t> covered_;
+  std::vector<std::uint32_t> passing_nodes_;
   std::vector<Treated> treated_;                        ///< by node
   std::vector<std::vector<Eigen::Vector2d>> aims_;      ///< by axis and stop
   std::vector<std::vector<std::uint32_t>> stop_nodes_;  ///< by stop of the axis at hand

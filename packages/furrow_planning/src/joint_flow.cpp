@@ -6,23 +6,31 @@
 namespace furrow::planning {
 
 void group_axes(const PreparedProblem& prepared, std::vector<std::vector<std::uint32_t>>& classes) {
-  classes.clear();
+  for (auto& axes : classes) {
+    axes.clear();
+  }
+  std::size_t count = 0;
   for (std::uint32_t a = 0; a < prepared.starts.size(); ++a) {
     const Start& start = prepared.starts[a];
     if (!start.usable) {
       continue;
     }
-    const auto same = std::find_if(classes.begin(), classes.end(), [&](const auto& axes) {
+    const auto end = classes.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto same = std::find_if(classes.begin(), end, [&](const auto& axes) {
       const Start& other = prepared.starts[axes.front()];
       return other.lower_y_m == start.lower_y_m && other.upper_y_m == start.upper_y_m &&
              other.transition == start.transition;
     });
-    if (same == classes.end()) {
-      classes.push_back({a});
-    } else {
+    if (same != end) {
       same->push_back(a);
+      continue;
     }
+    if (count == classes.size()) {
+      classes.emplace_back();
+    }
+    classes[count++].push_back(a);
   }
+  classes.resize(count);
 }
 
 // Node numbers: 0 the source; 1 to axes the starts; then bus, in and out of each member; the sink.

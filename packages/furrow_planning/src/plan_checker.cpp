@@ -28,6 +28,35 @@ double axis_time_s(const PlannerParameters& parameters, const AxisSpec& axis, do
   return way_m > 0.0 ? way_m / peak + peak / a : 0.0;
 }
 
+/// Time of a move after which it has gone a part of its way, found by halving on the position that
+/// the profile has then.
+double part_time_s(const PlannerParameters& parameters, const AxisSpec& axis, double part_m,
+                   double way_m) {
+  if (parameters.kinematics == "velocity") {
+    return part_m / axis.max_velocity_mps;
+  }
+  const double a = axis.max_acceleration_mps2;
+  const double peak = std::min(axis.max_velocity_mps, std::sqrt(a * way_m));
+  const double end_s = axis_time_s(parameters, axis, way_m);
+  const auto gone_m = [&](double t) {
+    const double ramp_s = peak / a;
+    if (t <= ramp_s) {
+      return 0.5 * a * t * t;
+    }
+    if (t <= end_s - ramp_s) {
+      return 0.5 * peak * ramp_s + peak * (t - ramp_s);
+    }
+    return way_m - 0.5 * a * (end_s - t) * (end_s - t);
+  };
+  double low = 0.0;
+  double high = end_s;
+  for (int i = 0; i < 50; ++i) {
+    const double t = 0.5 * (low + high);
+    (gone_m(t) < part_m ? low : high) = t;
+  }
+  return 0.5 * (low + high);
+}
+
 /// Gamma >= rho for the time that is left, by the logistic function; with a tolerance in robot way.
 bool feasible(const PlannerParameters& parameters, double spare_s, double speed_mps) {
   const double s = spare_s + kTolerance_m / speed_mps;
@@ -95,7 +124,25 @@ Status PlanChecker::check(const PlanningProblem& problem, const Plan& plan) {
       const double way_m = std::abs(stop.position_m - from_position_m);
       const double spare_s = (stop.robot_x_m - from_x_m) / speed_mps -
                              axis_time_s(parameters_, axis, way_m) - parameters_.settle_s - dwell_s;
-      if (!stop.moving && !feasible(parameters_, spare_s, speed_mps)) {
+      if (stop.moving) {
+        if (!parameters_.fire_while_moving || s + 1 == route.size() || route[s + 1].moving) {
+          return fault(stop_name(a, s) + " is fired in passing where that is not allowed");
+        }
+        const Stop& next = route[s + 1];
+        const double whole_m = std::abs(next.position_m - from_position_m);
+        const double before_s = part_time_s(parameters_, axis, way_m, whole_m);
+        const double start_s = (stop.robot_x_m - from_x_m) / speed_mps - before_s;
+        const double rest_s = 0.5 * parameters_.dwell_s * (s > 0 || state.after_spray ? 1.0 : 0.0);
+        const double arrive_s = (next.robot_x_m - stop.robot_x_m) / speed_mps + before_s -
+                                axis_time_s(parameters_, axis, whole_m) - parameters_.settle_s -
+                                0.5 * parameters_.dwell_s;
+        if (way_m + std::abs(next.position_m - stop.position_m) > whole_m + kTolerance_m ||
+            start_s < rest_s - kTolerance_m / speed_mps ||
+            !feasible(parameters_, arrive_s, speed_mps) ||
+            std::abs(stop.depart_x_m - stop.robot_x_m + speed_mps * before_s) > kTolerance_m) {
+          return fault(stop_name(a, s) + " is not passed by the move that it belongs to");
+        }
+      } else if (!feasible(parameters_, spare_s, speed_mps)) {
         return fault(stop_name(a, s) + " cannot be reached in time");
       }
       for (auto c =
@@ -140,10 +187,12 @@ Status PlanChecker::check(const PlanningProblem& problem, const Plan& plan) {
         weight += target.weight;
         ++treated;
       }
-      travel_m += way_m;
-      from_x_m = stop.robot_x_m;
-      from_position_m = stop.position_m;
-      dwell_s = parameters_.dwell_s;
+      if (!stop.moving) {
+        travel_m += way_m;
+        from_x_m = stop.robot_x_m;
+        from_position_m = stop.position_m;
+        dwell_s = parameters_.dwell_s;
+      }
     }
   }
   std::size_t decided = 0;

@@ -63,6 +63,7 @@ class Transition {
   [[nodiscard]] Kinematics kinematics() const { return kinematics_; }
   [[nodiscard]] double speed_mps() const { return speed_mps_; }
   [[nodiscard]] double velocity_mps() const { return velocity_mps_; }
+  [[nodiscard]] double acceleration_mps2() const { return acceleration_mps2_; }
   bool operator==(const Transition&) const = default;
 
   /// Rounding that is forgiven, so that a plan stays feasible when the frame's origin moves.

@@ -75,8 +75,10 @@ struct Stop {
   double robot_x_m = 0.0;                           ///< robot x at the spray
   double depart_x_m =
       0.0;  ///< robot x at which the axis must have left for this stop at the latest
-  double position_m = 0.0;         ///< axis position at the spray
-  bool moving = false;             ///< fired in passing, without coming to rest
+  double position_m = 0.0;  ///< axis position at the spray
+  /// Fired in passing, during the move to the next stop that is not moving. That move then departs
+  /// at depart_x_m exactly (the same for both) and runs at its full limits.
+  bool moving = false;
   std::uint32_t first_target = 0;  ///< into Plan::treated
   std::uint32_t target_count = 0;
 };
