@@ -30,9 +30,10 @@ RendererParameters random_appearance(std::uint64_t seed) {
   const auto& base = kSoils[ground.integer(0, std::size(kSoils) - 1)];
   const auto& other = kSoils[ground.integer(0, std::size(kSoils) - 1)];
   const double blend = ground.uniform(0.0, 0.5);
+  const double lightness = std::exp(ground.normal(0.0, 0.10));
   for (std::size_t i = 0; i < 3; ++i) {
     const double mixed = base[i] + blend * (other[i] - base[i]);
-    p.ground.soil_rgb[i] = std::clamp(mixed + ground.normal(0.0, 0.025), 0.08, 0.9);
+    p.ground.soil_rgb[i] = std::clamp(lightness * mixed + ground.normal(0.0, 0.010), 0.08, 0.9);
   }
   p.ground.moisture = std::pow(ground.uniform(), 1.6);
   p.ground.moisture_patchiness = ground.uniform();
@@ -53,7 +54,7 @@ RendererParameters random_appearance(std::uint64_t seed) {
   }
 
   Random plants(seed, "appearance plants");
-  p.plants.leaf_hue = std::clamp(plants.normal(0.0, 0.4), -1.0, 1.0);
+  p.plants.leaf_hue = std::clamp(plants.normal(0.0, 0.35), -1.0, 1.0);
   p.plants.leaf_brightness = plants.uniform(0.7, 1.35);
   p.plants.leaf_variation = plants.uniform(0.2, 1.4);
   p.plants.leaf_gloss = plants.uniform();
@@ -68,7 +69,7 @@ RendererParameters random_appearance(std::uint64_t seed) {
       light.bernoulli(0.35) ? light.uniform(0.75, 1.0) : light.uniform(0.15, 0.6);
   p.light.exposure = std::exp(light.normal(0.0, 0.3));
   p.light.exposure = std::clamp(p.light.exposure, 0.45, 2.0);
-  p.light.warmth = light.uniform(-0.8, 0.9);
+  p.light.warmth = light.uniform(-0.6, 0.8);
   p.light.contrast = light.uniform(0.75, 1.3);
   p.light.saturation = light.uniform(0.6, 1.3);
   p.light.robot_shadow = light.bernoulli(0.25);

@@ -1,6 +1,7 @@
 #include "furrow_simulation/ground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "furrow_core/error.hpp"
@@ -315,6 +316,12 @@ void Ground::shade(const Region& region, GroundBlock& block) const {
   const auto moisture = static_cast<float>(p.moisture);
   const auto patchiness = static_cast<float>(p.moisture_patchiness);
   const auto variation = static_cast<float>(p.color_variation);
+  // Patches of colour are three times as wide as the tile's waves.
+  std::array<int, GroundBlock::kSize> patch_column{};
+  for (int c = 0; c < GroundBlock::kSize; ++c) {
+    const int y = c + region.block_column + region.first_y + kTexelLift;
+    patch_column[static_cast<std::size_t>(c)] = (y / 3) % kCoarseTileSize;
+  }
   const Eigen::Vector3f stone(0.30f, 0.28f, 0.25f);
   const Eigen::Vector3f straw(0.50f, 0.40f, 0.21f);
   for (int r = 0; r < GroundBlock::kSize; ++r) {
@@ -335,8 +342,7 @@ void Ground::shade(const Region& region, GroundBlock& block) const {
       float wetness = 0.0f;
       const float tint = region.tint[i];
       if (region.material[i] == Material::kSoil) {
-        const int y = column + region.first_y + kTexelLift;
-        const float patch = coarse[(y / 3) % kCoarseTileSize];
+        const float patch = coarse[patch_column[static_cast<std::size_t>(c)]];
         // Tops dry first.
         wetness = std::clamp(moisture + patchiness * (0.9f * patch - 0.05f * region.relief_mm[i]) *
                                             (0.25f + moisture),
@@ -359,9 +365,9 @@ void Ground::shade(const Region& region, GroundBlock& block) const {
       const Eigen::Vector3f total = sky + direct;
       const Eigen::Vector3f bgr = light_.encode_bgr(albedo.cwiseProduct(total));
       GroundTexel& texel = block.texels[static_cast<std::size_t>(r) * GroundBlock::kSize + c];
-      for (int k = 0; k < 3; ++k) texel.bgr[k] = static_cast<std::uint8_t>(bgr[k] + 0.5f);
-      texel.shade = static_cast<std::uint8_t>(
-          255.0f * std::sqrt(std::min(sky.y() / std::max(total.y(), 1e-6f), 1.0f)));
+      const float shade = 255.0f * std::sqrt(std::min(sky.y() / std::max(total.y(), 1e-6f), 1.0f));
+      const auto byte = [](float value) { return static_cast<std::uint32_t>(value + 0.5f); };
+      texel.bgrs = byte(bgr.x()) | byte(bgr.y()) << 8 | byte(bgr.z()) << 16 | byte(shade) << 24;
       texel.height_64um = static_cast<std::int16_t>(
           std::clamp(height(i) * (1e-3f / GroundBlock::kHeightUnit_m), -32000.0f, 32000.0f));
     }

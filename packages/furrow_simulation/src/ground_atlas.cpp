@@ -20,7 +20,7 @@ std::int32_t block_of(std::int32_t texel) {
 GroundAtlas::Reader GroundAtlas::reader() const {
   Reader reader;
   reader.texels_ = texels_.data();
-  reader.stride_ = stride_;
+  reader.row_shift_ = std::countr_zero(stride_);
   reader.row_mask_ = row_mask_;
   reader.column_mask_ = column_mask_;
   return reader;

@@ -35,14 +35,18 @@ class GroundAtlas {
   class Reader {
    public:
     [[nodiscard]] const GroundTexel& texel(std::int32_t x, std::int32_t y) const {
-      return texels_[static_cast<std::size_t>(x & row_mask_) * stride_ +
-                     static_cast<std::size_t>(y & column_mask_)];
+      return row(x)[y & column_mask_];
     }
+    /// The row of texels at x, from which texel y is read at column(y).
+    [[nodiscard]] const GroundTexel* row(std::int32_t x) const {
+      return texels_ + (static_cast<std::ptrdiff_t>(x & row_mask_) << row_shift_);
+    }
+    [[nodiscard]] std::ptrdiff_t column(std::int32_t y) const { return y & column_mask_; }
 
    private:
     friend class GroundAtlas;
     const GroundTexel* texels_ = nullptr;
-    std::size_t stride_ = 0;
+    int row_shift_ = 0;
     std::int32_t row_mask_ = 0;
     std::int32_t column_mask_ = 0;
   };

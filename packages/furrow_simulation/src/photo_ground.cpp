@@ -233,6 +233,8 @@ Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Is
   const int level = finest > 0.0 ? std::min(static_cast<int>(finest), level_count - 1) : 0;
 
   const double left_m = 0.5 * columns_ * cell_width_m_;
+  const double per_length = 1.0 / cell_length_m_;
+  const double per_width = 1.0 / cell_width_m_;
   for_bands(intrinsics.height_px, threads, [&](int first, int end) {
     for (int v = first; v < end; ++v) {
       auto* bgr = frame.bgr.ptr<std::uint8_t>(v);
@@ -250,13 +252,14 @@ Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Is
           continue;
         }
         // Cells count along +x and +y; photos upwards along +x, to the right along -y.
-        const int row = std::min(static_cast<int>(x / cell_length_m_), rows_ - 1);
-        const int column =
-            std::clamp(static_cast<int>((y + left_m) / cell_width_m_), 0, columns_ - 1);
+        const double cells_x = x * per_length;
+        const double cells_y = (y + left_m) * per_width;
+        const int row = std::min(static_cast<int>(cells_x), rows_ - 1);
+        const int column = std::clamp(static_cast<int>(cells_y), 0, columns_ - 1);
         const Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
         const cv::Mat& source = photos_[cell.photo].levels[static_cast<std::size_t>(level)];
-        double from_left = (column + 1) - (y + left_m) / cell_width_m_;
-        double from_top = (row + 1) - x / cell_length_m_;
+        double from_left = (column + 1) - cells_y;
+        double from_top = (row + 1) - cells_x;
         if (cell.mirror) from_left = 1.0 - from_left;
         if (cell.half_turn) {
           from_left = 1.0 - from_left;

@@ -51,9 +51,9 @@ class FormBuilder {
               Random& random)
       : mesh_(mesh), shape_(shape), parameters_(parameters), random_(random) {
     colors_ = form_colors(shape.form);
-    plant_hue_ = noise(0.10f * variation());
+    plant_hue_ = noise(0.08f * variation());
     plant_gain_ = 1.0f + noise(0.16f * variation());
-    yellow_ = random_.bernoulli(0.5 * parameters.leaf_damage) ? uniform(0.2f, 0.7f) : 0.0f;
+    yellow_ = random_.bernoulli(0.3 * parameters.leaf_damage) ? uniform(0.15f, 0.6f) : 0.0f;
   }
 
   void build() {
@@ -137,6 +137,11 @@ class FormBuilder {
     return leaf;
   }
 
+  void stalk(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float width, float sag,
+             const Eigen::Vector3f& albedo) {
+    add_stalk(mesh_, from, to, std::max(width, shape_.stalk_width), sag, albedo);
+  }
+
   void petiole_and_blade(const Style& style, Leaf leaf, const Eigen::Vector3f& from, float size,
                          float rise) {
     const float length = style.petiole * size;
@@ -147,8 +152,8 @@ class FormBuilder {
     leaf.base = to;
     add_leaf(mesh_, leaf);
     // Above the blade's base: the petiole runs on into the midrib.
-    add_stalk(mesh_, from, to + Eigen::Vector3f(0.0f, 0.0f, 0.002f), style.petiole_width * size,
-              0.08f * length, color(colors_.stalk));
+    stalk(from, to + Eigen::Vector3f(0.0f, 0.0f, 0.002f), style.petiole_width * size,
+          0.08f * length, color(colors_.stalk));
   }
 
   void cotyledons(const Style& style, float azimuth, float size) {
@@ -281,7 +286,7 @@ class FormBuilder {
     for (int n = 0; n < nodes; ++n) {
       const float age = 1.0f - static_cast<float>(n) / static_cast<float>(nodes + 1);
       const Eigen::Vector3f next = node + Eigen::Vector3f(0, 0, style.node) * age + lean * age;
-      add_stalk(mesh_, node, next, 0.05f, 0.0f, color(colors_.stalk));
+      stalk(node, next, 0.05f, 0.0f, color(colors_.stalk));
       node = next;
       const float azimuth =
           shape_.heading_rad + 0.5f * kPi * static_cast<float>(n + 1) + noise(0.2f);
@@ -342,7 +347,7 @@ class FormBuilder {
         const Eigen::Vector3f next =
             p + step * Eigen::Vector3f(std::cos(slope) * std::cos(azimuth),
                                        std::cos(slope) * std::sin(azimuth), std::sin(slope));
-        add_stalk(mesh_, p, next, 0.028f * size, 0.0f, albedo);
+        stalk(p, next, 0.028f * size, 0.0f, albedo);
         p = next;
         if (k < 2) continue;
         const float reach =
@@ -395,7 +400,7 @@ class FormBuilder {
           0.62f * size *
           Eigen::Vector3f(std::cos(azimuth) * std::cos(rise), std::sin(azimuth) * std::cos(rise),
                           std::sin(rise));
-      add_stalk(mesh_, {0.0f, 0.0f, 0.01f}, to, 0.03f, 0.03f, color(colors_.stalk));
+      stalk({0.0f, 0.0f, 0.01f}, to, 0.03f, 0.03f, color(colors_.stalk));
       const Eigen::Vector3f albedo = leaf_color(static_cast<float>(n) / static_cast<float>(stalks));
       for (int k = -1; k <= 1; ++k) {
         Leaf leaf;
@@ -424,7 +429,7 @@ class FormBuilder {
       const float size = 1.0f - 0.12f * static_cast<float>(n);
       const Eigen::Vector3f next =
           node + Eigen::Vector3f(0.22f * std::cos(lean), 0.22f * std::sin(lean), 0.13f) * size;
-      add_stalk(mesh_, node, next, 0.035f, 0.0f, color(colors_.stalk));
+      stalk(node, next, 0.035f, 0.0f, color(colors_.stalk));
       node = next;
       const Eigen::Vector3f albedo = leaf_color(0.25f * static_cast<float>(n));
       const float turn = uniform(0.0f, kPi);

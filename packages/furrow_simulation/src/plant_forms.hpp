@@ -10,6 +10,7 @@ struct PlantShape {
   field::LeafForm form = field::LeafForm::kBeet;
   int leaves = 2;
   float heading_rad = 0.0f;
+  float stalk_width = 0.0f;  ///< at least
   float blade_width = 1.0f;  ///< factor on the usual width of the form's blades
 };
 

@@ -13,6 +13,8 @@
 namespace furrow::simulation {
 namespace {
 
+// Thinner stalks would fall between the pixels.
+constexpr double kMinStalk_m = 0.0011;
 // The canopy's height may not exceed this share of its radius.
 constexpr float kMaxHeightShare = 1.1f;
 // How far a radius may give way to the area.
@@ -116,6 +118,7 @@ PlantMesh build_plant_mesh(const field::Plant& plant, field::LeafForm form,
   PlantMesh mesh;
   PlantShape shape;
   shape.form = form;
+  shape.stalk_width = static_cast<float>(kMinStalk_m / radius_m);
   shape.leaves = std::clamp(plant.leaves, 2, 16);
   shape.heading_rad =
       std::isfinite(plant.heading_rad) ? static_cast<float>(plant.heading_rad) : 0.0f;
@@ -131,7 +134,7 @@ PlantMesh build_plant_mesh(const field::Plant& plant, field::LeafForm form,
     for (int pass = 0; pass < 2; ++pass) {
       const double ratio = plant.area_mm2 / std::max(mesh.top_area_mm2, 1e-3);
       if (std::abs(ratio - 1.0) < 0.05) break;
-      shape.blade_width = std::clamp(shape.blade_width * static_cast<float>(ratio), 0.5f, 1.9f);
+      shape.blade_width = std::clamp(shape.blade_width * static_cast<float>(ratio), 0.5f, 1.55f);
       rebuild();
     }
     // What the blades' width cannot give, a slightly different radius does.

@@ -26,9 +26,7 @@ bool is_usable(const Eigen::Isometry3d& X_FC) {
 
 // A texel's channels in 16 bits each; from the lowest: blue, red, green, shade.
 std::uint64_t spread(const GroundTexel& texel) {
-  const std::uint32_t low = texel.bgr[0] | static_cast<std::uint32_t>(texel.bgr[2]) << 16;
-  const std::uint32_t high = texel.bgr[1] | static_cast<std::uint32_t>(texel.shade) << 16;
-  return low | static_cast<std::uint64_t>(high) << 32;
+  return (texel.bgrs & 0x00FF00FFu) | static_cast<std::uint64_t>(texel.bgrs & 0xFF00FF00u) << 24;
 }
 
 // The part of the ground that the camera sees, within reach.
@@ -87,13 +85,17 @@ class Renderer::Implementation {
                std::uint64_t frame_index) {
     const auto& intrinsics = camera.intrinsics();
     Frame frame;
-    frame.bgr.create(intrinsics.height_px, intrinsics.width_px, CV_8UC3);
-    frame.depth_m = cv::Mat::zeros(frame.bgr.size(), CV_32FC1);
+    // Drawn in buffers that are kept; the camera's effects write into the frame's own.
+    bgr_.create(intrinsics.height_px, intrinsics.width_px, CV_8UC3);
+    depth_m_.create(bgr_.size(), CV_32FC1);
+    depth_m_.setTo(0.0);
+    frame.bgr = bgr_;
+    frame.depth_m = depth_m_;
     frame.plant_index.create(frame.bgr.size(), CV_32SC1);
     frame.plant_index.setTo(-1);
     if (!is_usable(X_FC)) {
       frame.bgr.setTo(cv::Scalar(kSky_bgr[0], kSky_bgr[1], kSky_bgr[2]));
-      return frame;
+      return owning(std::move(frame));
     }
     plants_.forget_unused();
     const View view(intrinsics, X_FC);
@@ -144,10 +146,17 @@ class Renderer::Implementation {
     const Eigen::Vector3d travel_C = X_FC.linear().transpose() * Eigen::Vector3d::UnitX();
     effects_.apply(frame.bgr, frame.depth_m, frame_index,
                    std::abs(travel_C.y()) >= std::abs(travel_C.x()), threads);
-    return frame;
+    return owning(std::move(frame));
   }
 
  private:
+  // Copies what the frame still shares with the buffers.
+  [[nodiscard]] Frame owning(Frame frame) const {
+    if (frame.bgr.data == bgr_.data) frame.bgr = bgr_.clone();
+    if (frame.depth_m.data == depth_m_.data) frame.depth_m = depth_m_.clone();
+    return frame;
+  }
+
   void gather_casters(std::int32_t block_x, std::int32_t block_y,
                       std::vector<ShadowTriangle>& casters) {
     const double side = GroundBlock::kSize * ground_.texel_m();
@@ -178,14 +187,14 @@ class Renderer::Implementation {
     return placed;
   }
 
-  // Where a row's rays meet level ground: depths, and texels from the window's corner.
+  // Where a row's rays meet level ground: depths, and 256ths of texels from the window's corner.
   struct RowHits {
     explicit RowHits(int width) : depth(width), x(width), y(width), rise_x(width), rise_y(width) {}
     std::vector<float> depth;
-    std::vector<float> x;
-    std::vector<float> y;
-    std::vector<float> rise_x;  // shift of the texel for ground that is higher by the unit
-    std::vector<float> rise_y;
+    std::vector<std::int32_t> x;
+    std::vector<std::int32_t> y;
+    std::vector<std::int32_t> rise_x;  // 1024ths of that, for a unit of the ground's height
+    std::vector<std::int32_t> rise_y;
   };
 
   void intersect_row(const View& view, const GroundAtlas::Window& window, int v,
@@ -207,10 +216,16 @@ class Renderer::Implementation {
     const float sy = step.y();
     const float sz = step.z();
     float* depth = hits.depth.data();
-    float* x = hits.x.data();
-    float* y = hits.y.data();
-    float* rise_x = hits.rise_x.data();
-    float* rise_y = hits.rise_y.data();
+    std::int32_t* x = hits.x.data();
+    std::int32_t* y = hits.y.data();
+    std::int32_t* rise_x = hits.rise_x.data();
+    std::int32_t* rise_y = hits.rise_y.data();
+    // Keeps the product of a rise and any height within 32 bits; reached at flat angles only.
+    constexpr float kMaxRise = 65536.0f;
+    constexpr float kFar = 1e7f;
+    const auto fixed = [](float value, float limit) {
+      return static_cast<std::int32_t>(std::min(std::max(value, -limit), limit));
+    };
     const int width = static_cast<int>(hits.depth.size());
     for (int u = 0; u < width; ++u) {
       const auto t = static_cast<float>(u);
@@ -220,10 +235,10 @@ class Renderer::Implementation {
       const float step_x = distance * (rx + t * sx) * per_texel;
       const float step_y = distance * (ry + t * sy) * per_texel;
       depth[u] = distance;
-      x[u] = start_x + step_x;
-      y[u] = start_y + step_y;
-      rise_x[u] = -unit * step_x;
-      rise_y[u] = -unit * step_y;
+      x[u] = fixed(256.0f * (start_x + step_x), kFar);
+      y[u] = fixed(256.0f * (start_y + step_y), kFar);
+      rise_x[u] = fixed(-262144.0f * unit * step_x, kMaxRise);
+      rise_y[u] = fixed(-262144.0f * unit * step_y, kMaxRise);
     }
   }
 
@@ -237,8 +252,8 @@ class Renderer::Implementation {
     auto* depth = frame.depth_m.ptr<float>(v);
     auto* index = frame.plant_index.ptr<std::int32_t>(v);
     const float unit = GroundBlock::kHeightUnit_m / static_cast<float>(view.p_FC().z());
-    const float limit_x = static_cast<float>(window.last_x - window.first_x) - 1.0f;
-    const float limit_y = static_cast<float>(window.last_y - window.first_y) - 1.0f;
+    const std::int32_t limit_x = (window.last_x - window.first_x - 1) * 256;
+    const std::int32_t limit_y = (window.last_y - window.first_y - 1) * 256;
     const std::int32_t first_x = window.first_x;
     const std::int32_t first_y = window.first_y;
     const bool shaded = shadow.enabled();
@@ -252,33 +267,34 @@ class Renderer::Implementation {
         continue;
       }
       std::uint8_t* out = bgr + 3 * u;
-      float x = hits.x[u];
-      float y = hits.y[u];
-      if (!(x >= 1.0f && y >= 1.0f && x < limit_x && y < limit_y)) {
+      std::int32_t x = hits.x[u];
+      std::int32_t y = hits.y[u];
+      if (x < 256 || y < 256 || x >= limit_x || y >= limit_y) {
         std::copy(kSky_bgr.begin(), kSky_bgr.end(), out);
         continue;
       }
       // One step of the intersection with the uneven ground.
-      const auto height = static_cast<float>(
-          ground.texel(first_x + static_cast<int>(x + 0.5f), first_y + static_cast<int>(y + 0.5f))
-              .height_64um);
-      x = std::clamp(x + height * hits.rise_x[u], 0.0f, limit_x);
-      y = std::clamp(y + height * hits.rise_y[u], 0.0f, limit_y);
-      const auto whole_x = static_cast<int>(x);
-      const auto whole_y = static_cast<int>(y);
-      const auto part_x = static_cast<std::uint32_t>((x - static_cast<float>(whole_x)) * 256.0f);
-      const auto part_y = static_cast<std::uint32_t>((y - static_cast<float>(whole_y)) * 256.0f);
-      const GroundTexel& a = ground.texel(first_x + whole_x, first_y + whole_y);
-      const GroundTexel& b = ground.texel(first_x + whole_x, first_y + whole_y + 1);
-      const GroundTexel& c = ground.texel(first_x + whole_x + 1, first_y + whole_y);
-      const GroundTexel& d = ground.texel(first_x + whole_x + 1, first_y + whole_y + 1);
+      const std::int32_t height =
+          ground.texel(first_x + ((x + 128) >> 8), first_y + ((y + 128) >> 8)).height_64um;
+      x = std::clamp(x + (height * hits.rise_x[u] >> 10), 0, limit_x);
+      y = std::clamp(y + (height * hits.rise_y[u] >> 10), 0, limit_y);
+      const std::int32_t whole_x = x >> 8;
+      const std::int32_t whole_y = y >> 8;
+      const auto part_x = static_cast<std::uint32_t>(x & 255);
+      const auto part_y = static_cast<std::uint32_t>(y & 255);
+      const GroundTexel* near_row = ground.row(first_x + whole_x);
+      const GroundTexel* far_row = ground.row(first_x + whole_x + 1);
+      const std::ptrdiff_t left = ground.column(first_y + whole_y);
+      const std::ptrdiff_t right = ground.column(first_y + whole_y + 1);
+      const GroundTexel& a = near_row[left];
       const std::uint32_t weight_d = part_x * part_y >> 8;
       const std::uint32_t weight_c = part_x - weight_d;
       const std::uint32_t weight_b = part_y - weight_d;
       const std::uint32_t weight_a = 256 - part_x - weight_b;
       // Four channels at once, each in 16 bits: the weights sum to 256.
-      const std::uint64_t sum =
-          spread(a) * weight_a + spread(b) * weight_b + spread(c) * weight_c + spread(d) * weight_d;
+      const std::uint64_t sum = spread(a) * weight_a + spread(near_row[right]) * weight_b +
+                                spread(far_row[left]) * weight_c +
+                                spread(far_row[right]) * weight_d;
       out[0] = static_cast<std::uint8_t>(sum >> 8);
       out[1] = static_cast<std::uint8_t>(sum >> 40);
       out[2] = static_cast<std::uint8_t>(sum >> 24);
@@ -302,6 +318,8 @@ class Renderer::Implementation {
   PlantCache plants_;
   const LeafTexture texture_;
   const CameraEffects effects_;
+  cv::Mat bgr_;
+  cv::Mat depth_m_;
 };
 
 Renderer::Renderer(field::FieldModel field, const RendererParameters& parameters,

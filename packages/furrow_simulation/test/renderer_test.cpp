@@ -130,6 +130,16 @@ TEST(Renderer, SameSeedSameBytesWhateverWasSeenBefore) {
   EXPECT_TRUE(same_bytes(a.plant_index, later.plant_index));
 }
 
+TEST(Renderer, FramesOwnTheirPixels) {
+  Renderer renderer(field_of(some_plants()), clean(), 7);
+  const Frame first = renderer.render(small_camera(), looking_down(1.0, 0.1, 1.0), 0);
+  const cv::Mat bgr = first.bgr.clone();
+  const cv::Mat depth_m = first.depth_m.clone();
+  (void)renderer.render(small_camera(), looking_down(2.0, 0.1, 0.8), 0);
+  EXPECT_TRUE(same_bytes(bgr, first.bgr));
+  EXPECT_TRUE(same_bytes(depth_m, first.depth_m));
+}
+
 TEST(Renderer, ThreadsDoNotChangeTheBytes) {
   RendererParameters p = random_appearance(3);
   p.ground.ground_resolution_mm = 4.0;

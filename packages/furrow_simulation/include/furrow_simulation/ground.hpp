@@ -28,10 +28,10 @@ struct GroundParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// A point of the ground, lit.
+/// A point of the ground, lit. `bgrs` holds blue in its lowest byte, then green, red, and the
+/// brightness out of the sun as a share (of 255) of the colour.
 struct GroundTexel {
-  std::uint8_t bgr[3] = {0, 0, 0};
-  std::uint8_t shade = 255;  ///< brightness out of the sun, as a share (of 255) of `bgr`
+  std::uint32_t bgrs = 0;
   std::int16_t height_64um = 0;
   std::uint16_t unused = 0;  ///< keeps a texel to eight bytes
 };
