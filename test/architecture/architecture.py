@@ -54,7 +54,8 @@ LAYERS = {
 RESTRICTED = [
     ("Fast DDS", re.compile(r"^(fastdds|fastrtps)/"), {"fastrtps", "fastdds"}, {"furrow_dds"}),
     ("Fast CDR", re.compile(r"^fastcdr/"), {"fastcdr"}, {"furrow_dds", "furrow_msgs"}),
-    ("yaml-cpp", re.compile(r"^yaml-cpp/"), {"yaml-cpp"}, {"furrow_graph", "furrow_vision"}),
+    ("yaml-cpp", re.compile(r"^yaml-cpp/"), {"yaml-cpp"},
+     {"furrow_graph", "furrow_recording", "furrow_vision"}),
     ("CLI11", re.compile(r"^CLI/"), {"CLI11"}, {"furrow_cli"}),
 ]
 # Where a package's use is for one purpose only.
@@ -77,6 +78,7 @@ CMAKE_NAMES = {
     "libmodbus-dev": "libmodbus",
     "libopencv-dev": "OpenCV",
     "liburdfdom-dev": "urdfdom",
+    "libyaml-cpp-dev": "yaml-cpp",
     "libzstd-dev": "libzstd",
     "nlohmann-json-dev": "nlohmann_json",
 }

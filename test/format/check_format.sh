@@ -11,7 +11,7 @@ if ! command -v clang-format >/dev/null; then
   exit 77
 fi
 find packages -type f \( -name '*.hpp' -o -name '*.cpp' \) -print0 |
-  if xargs -0 -r -n 16 -P "$(nproc)" clang-format --dry-run --Werror 2>&1 |
+  if xargs -0 -r clang-format --dry-run --Werror 2>&1 |
     sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u | grep .; then
     echo "These files are not formatted; run: clang-format -i FILE"
     exit 1

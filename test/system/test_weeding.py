@@ -1,0 +1,125 @@
+"""Whole runs over a short row, in simulated time: the same twice, accounted for, accurate."""
+
+import unittest
+
+from furrow_case import FurrowCase
+
+LENGTH_M = 6
+WALL_CLOCK_KEYS = {"realtime_factor", "wall_s"}
+MISSES = {"undetected", "unconfirmed", "misclassified", "low_priority", "protected_crop",
+          "unreachable", "stale", "outside", "fault", "placement", "end_of_run"}
+# What a planner may lose when it sees everything and the machine does as it says.
+PLANNING_MISSES = {"low_priority", "protected_crop", "unreachable", "outside", "end_of_run"}
+
+
+def without_wall_clock(summary):
+    return {key: value for key, value in summary.items() if key not in WALL_CLOCK_KEYS}
+
+
+class RenderedRowTest(FurrowCase):
+    """The default graph at 8.2 weeds per m2 and 0.5 m/s, twice with one seed."""
+
+    @classmethod
+    def setUpClass(cls):
+        case = cls("test_every_plant_is_accounted_for")
+        FurrowCase.setUp(case)
+        cls.addClassCleanup(case.doCleanups)
+        cls.runs = []
+        for name, threads in (("first", 2), ("second", 1)):
+            out = case.folder / name
+            summary = case.run_graph("--seed", 7, "--length", LENGTH_M, "--threads", threads,
+                                     out=out)
+            cls.runs.append((out, summary))
+
+    def test_one_seed_gives_the_same_bytes(self):
+        (first, summary), (second, again) = self.runs
+        for name in ("ledger.csv", "map.svg"):
+            self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
+        self.assertEqual(without_wall_clock(summary), without_wall_clock(again))
+        self.assertTrue(WALL_CLOCK_KEYS <= summary.keys())
+
+    def test_every_plant_is_accounted_for(self):
+        out, summary = self.runs[0]
+        rows = self.ledger(out)
+        weeds = [row for row in rows if row["kind"] == "weed"]
+        crops = [row for row in rows if row["kind"] == "crop"]
+        missed = [row for row in weeds if row["outcome"] == "missed"]
+        # 8.2 weeds/m2 on 6 m by 1.39 m are 68 on average, with a standard deviation of 8.
+        self.assertGreater(len(weeds), 68 - 4 * 8)
+        self.assertLess(len(weeds), 68 + 4 * 8)
+        self.assertEqual(len({row["plant_id"] for row in rows}), len(rows))
+        for row in missed:
+            self.assertIn(row["reason"], MISSES, row)
+        self.assertEqual(len(weeds), summary["weeds_total"])
+        self.assertEqual(len(crops), summary["crops_total"])
+        self.assertEqual(len(missed), summary["missed"])
+        self.assertEqual(sum(summary["missed_by_reason"].values()), summary["missed"])
+        self.assertEqual(summary["treated_accurate"] + summary["treated_partial"] + len(missed),
+                         len(weeds))
+        self.assertAlmostEqual(summary["loss_vision_pct"] + summary["loss_planning_pct"],
+                               summary["loss_pct"], places=3)
+
+    def test_sprays_land_where_they_should(self):
+        summary = self.runs[0][1]
+        # More than half of the weeds: a run that sprays nothing places nothing wrongly.
+        self.assertGreater(summary["treated_accurate"], 0.5 * summary["weeds_total"])
+        self.assertLess(summary["placement_error_p95_mm"], 10.0)
+        self.assertLess(summary["crops_hit"], 0.02 * summary["crops_total"])
+
+    def test_report_is_whole_and_self_contained(self):
+        out = self.runs[0][0]
+        self.assertEqual(sorted(path.name for path in out.iterdir()),
+                         ["ledger.csv", "map.svg", "report.html", "summary.json"])
+        page = (out / "report.html").read_text()
+        self.assertTrue(page.rstrip().endswith("</html>"))
+        for outside in ("src=\"http", "href=\"http", "<script", "url(http"):
+            self.assertNotIn(outside, page)
+
+
+class TrueDetectionsTest(FurrowCase):
+    """A perfect detector by a switch in the graph file: planning's own loss is left."""
+
+    def test_only_planning_loses(self):
+        summary = self.run_graph("--graph", "weeding_true_detections", "--seed", 7, "--length", 20)
+        self.assertEqual(summary["loss_vision_pct"], 0.0)
+        lost = {reason for reason, count in summary["missed_by_reason"].items() if count}
+        self.assertLessEqual(lost, PLANNING_MISSES)
+        for row in self.ledger():
+            if row["kind"] == "weed" and row["outcome"] == "missed":
+                # Never one that the plan wanted: what it decided to treat was treated.
+                self.assertNotEqual(row["decision"], "treat", row)
+                self.assertEqual(row["axis"], "", row)
+        self.assertLess(summary["placement_error_p95_mm"], 5.0)
+        self.assertEqual(summary["crops_hit"], 0)
+
+    def test_another_seed_is_another_field(self):
+        common = ["--graph", "weeding_true_detections", "--length", 3]
+        self.run_graph(*common, "--seed", 1, out=self.folder / "1")
+        self.run_graph(*common, "--seed", 2, out=self.folder / "2")
+        self.assertNotEqual(self.ledger(self.folder / "1"), self.ledger(self.folder / "2"))
+
+
+class DistractionsTest(FurrowCase):
+    """What is around a run must not matter."""
+
+    def test_a_report_replaces_the_one_before(self):
+        common = ["--graph", "weeding_true_detections", "--length", 3]
+        self.run_graph(*common, "--seed", 1)
+        before = self.ledger()
+        self.run_graph(*common, "--seed", 2)
+        self.assertNotEqual(before, self.ledger())
+        self.assertEqual(len(list(self.out.iterdir())), 4)
+
+    def test_generated_field_can_be_kept_and_run_again(self):
+        for name in ("field.csv", "field.geojson"):
+            field = self.folder / name
+            done = self.furrow("field", "generate", "--length", 3, "--seed", 5, "--out", field)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = self.run_graph("--graph", "weeding_true_detections", "--field", field)
+            shown = self.furrow("field", "show", field)
+            self.assertEqual(shown.returncode, 0, shown.stderr)
+            self.assertIn(f"{summary['weeds_total']} weeds,", shown.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
