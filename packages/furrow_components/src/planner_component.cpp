@@ -193,6 +193,7 @@ class PlannerComponent final : public graph::Component {
   void take(const furrow_msgs::msg::Tracks& tracks) {
     crops_.clear();
     left_standing_.clear();
+    lost_.clear();
     for (const Track& track : tracks.tracks()) {
       if (alive(track) && is_crop(track)) {
         crops_.push_back({from_point(track.position()).head<2>(), track.area_mm2()});
@@ -221,8 +222,9 @@ class PlannerComponent final : public graph::Component {
   }
 
   // A track that ended because it was left behind keeps its outcome; remove() then does nothing.
+  // One that ends before was believed too early: the ledger calls it unconfirmed.
   void forget(std::int64_t id) {
-    view_->remove(id);
+    if (view_->remove(id)) lost_.push_back(id);
     view_->remove_protected(id);
   }
 
@@ -275,6 +277,10 @@ class PlannerComponent final : public graph::Component {
     for (const std::int64_t id : left_standing_) {
       message.decisions().push_back(to_decision(id, planning::Decision::kLowPriority, -1, base));
     }
+    for (const std::int64_t id : lost_) {
+      message.decisions().push_back(to_decision(id, planning::Decision::kInvalid, -1, base));
+      message.decisions().back().decision("unconfirmed");
+    }
     outcomes_.clear();
     view_->take_outcomes(outcomes_);
     for (const planning::TargetOutcome& outcome : outcomes_) {
@@ -321,6 +327,7 @@ class PlannerComponent final : public graph::Component {
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::vector<planning::CropPhenotype> crops_;
   std::vector<std::int64_t> left_standing_;  ///< on purpose, by the newest tracks
+  std::vector<std::int64_t> lost_;           ///< targets whose track the tracker gave up
   std::vector<planning::TargetOutcome> outcomes_;
   std::uint64_t revision_ = 0;
   std::int64_t stop_id_ = 0;
