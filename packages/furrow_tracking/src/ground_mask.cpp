@@ -11,7 +11,7 @@ constexpr double kMaxCell = 1e6;
 struct Cell {
   std::int32_t row;
   std::int32_t column;
-  auto operator<=>(const Cell&) const = default;
+  bool operator==(const Cell&) const = default;
 };
 
 std::vector<Cell> cells_of(std::span<const Eigen::Vector2d> points_F, double cell_m) {
@@ -25,7 +25,9 @@ std::vector<Cell> cells_of(std::span<const Eigen::Vector2d> points_F, double cel
     // Neighbouring pixels often fall into the same cell.
     if (cells.empty() || cells.back() != cell) cells.push_back(cell);
   }
-  std::sort(cells.begin(), cells.end());
+  std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
+    return a.row != b.row ? a.row < b.row : a.column < b.column;
+  });
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
 }
@@ -79,7 +81,7 @@ double GroundMask::area_mm2() const {
   return static_cast<double>(cell_count()) * cell_m_ * cell_m_ * 1e6;
 }
 
-std::optional<Eigen::Vector2d> GroundMask::centroid_F() const {
+std::optional<Eigen::Vector2d> GroundMask::centroid() const {
   if (empty()) return std::nullopt;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const Run& run : runs_) {

@@ -128,6 +128,7 @@ void TrackingEvaluation::score_identities(TrackingScores& scores) const {
     }
   }
   std::vector<CandidatePair> candidates;
+  candidates.reserve(frames_together.size());
   for (const auto& [ids, count] : frames_together) {
     candidates.push_back({ids.first, ids.second, -count});
   }

@@ -100,7 +100,7 @@ Result<GroundFootprint> reproject_mask(const geometry::PinholeCamera& camera,
     }
   }
   footprint.mask = GroundMask::from_points(points_F, cell_m);
-  const auto centroid_F = footprint.mask.centroid_F();
+  const auto centroid_F = footprint.mask.centroid();
   if (!centroid_F) return Error{ErrorCode::kNotFound, "no pixel of the mask has a depth"};
   for (const Eigen::Vector2d& point_F : points_F) {
     footprint.radius_m = std::max(footprint.radius_m, (point_F - *centroid_F).norm());

@@ -123,7 +123,7 @@ TEST(GroundMask, CirclesHaveTheirAreaAndCentre) {
   const Eigen::Vector2d centre(0.3, -0.2);
   const GroundMask mask = GroundMask::from_circle(centre, 0.05, 0.001);
   EXPECT_NEAR(mask.area_mm2(), std::numbers::pi * 2500.0, 40.0);
-  EXPECT_NEAR((*mask.centroid_F() - centre).norm(), 0.0, 1e-3);
+  EXPECT_NEAR((*mask.centroid() - centre).norm(), 0.0, 1e-3);
   EXPECT_EQ(GroundMask::iou(mask, mask), 1.0);
   EXPECT_EQ(GroundMask::iou(mask, GroundMask::from_circle(centre, 0.05, 0.002)), 0.0);
   EXPECT_EQ(GroundMask::iou(mask, GroundMask()), 0.0);
@@ -133,7 +133,7 @@ TEST(GroundMask, LeavesOutPointsThatAreNowhere) {
   const GroundMask mask = GroundMask::from_points(
       Points{{kNan, 0.0}, {0.0, std::numeric_limits<double>::infinity()}, {1e9, 0.0}}, 0.001);
   EXPECT_TRUE(mask.empty());
-  EXPECT_FALSE(mask.centroid_F().has_value());
+  EXPECT_FALSE(mask.centroid().has_value());
   EXPECT_TRUE(GroundMask::from_circle({kNan, 0.0}, 0.1, 0.001).empty());
 }
 
@@ -214,7 +214,7 @@ TEST(ReprojectMask, CarriesADiscToItsPlaceAndSize) {
   const Eigen::Isometry3d X_FC = looking_down(2.0, 0.3);
   const GroundFootprint footprint = *reproject_mask(camera(), X_FC, mask, depth);
   const Eigen::Vector2d expected(2.0 - (400 - 479.5) / 870.0, 0.3 - (700 - 639.5) / 870.0);
-  EXPECT_NEAR((*footprint.mask.centroid_F() - expected).norm(), 0.0, 0.001);
+  EXPECT_NEAR((*footprint.mask.centroid() - expected).norm(), 0.0, 0.001);
   EXPECT_NEAR(footprint.radius_m, 60.0 / 870.0, 0.002);
   EXPECT_NEAR(footprint.area_mm2, static_cast<double>(count) * 1e6 / (870.0 * 870.0), 1e-3);
   EXPECT_NEAR(footprint.mask.area_mm2(), footprint.area_mm2, 0.06 * footprint.area_mm2);

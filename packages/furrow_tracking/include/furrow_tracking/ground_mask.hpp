@@ -36,8 +36,8 @@ class GroundMask {
   [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
   [[nodiscard]] std::int64_t cell_count() const;
   [[nodiscard]] double area_mm2() const;
-  /// Mean of the cells' centres; nothing when empty.
-  [[nodiscard]] std::optional<Eigen::Vector2d> centroid_F() const;
+  /// Mean of the cells' centres, in F; nothing when empty.
+  [[nodiscard]] std::optional<Eigen::Vector2d> centroid() const;
 
   /// Cells in both over cells in either (Jaccard); 0 when either is empty or the cell sizes differ.
   [[nodiscard]] static double iou(const GroundMask& a, const GroundMask& b);

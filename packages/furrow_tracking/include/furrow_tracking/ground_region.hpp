@@ -30,8 +30,8 @@ class GroundRegion {
   [[nodiscard]] bool contains(const Eigen::Vector2d& p_F, double margin_m = 0.0) const;
 
   [[nodiscard]] bool empty() const { return corners_F_.empty(); }
-  /// Counter-clockwise.
-  [[nodiscard]] const std::vector<Eigen::Vector2d>& corners_F() const { return corners_F_; }
+  /// In F, counter-clockwise.
+  [[nodiscard]] const std::vector<Eigen::Vector2d>& corners() const { return corners_F_; }
 
  private:
   std::vector<Eigen::Vector2d> corners_F_;
