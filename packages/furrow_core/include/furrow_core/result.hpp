@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cassert>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -9,7 +8,8 @@
 
 namespace furrow {
 
-/// A value, or the Error that stands in its place. Reading the one that is not there is a bug.
+/// A value, or the Error that stands in its place. Reading the one that is not there is a bug and
+/// throws std::bad_variant_access or std::bad_optional_access.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -19,16 +19,16 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool ok() const { return content_.index() == 0; }
   explicit operator bool() const { return ok(); }
 
-  [[nodiscard]] T& value() & { return assert(ok()), *std::get_if<0>(&content_); }
-  [[nodiscard]] const T& value() const& { return assert(ok()), *std::get_if<0>(&content_); }
-  [[nodiscard]] T&& value() && { return assert(ok()), std::move(*std::get_if<0>(&content_)); }
+  [[nodiscard]] T& value() & { return std::get<0>(content_); }
+  [[nodiscard]] const T& value() const& { return std::get<0>(content_); }
+  [[nodiscard]] T&& value() && { return std::get<0>(std::move(content_)); }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   T&& operator*() && { return std::move(*this).value(); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
 
-  [[nodiscard]] const Error& error() const { return assert(!ok()), *std::get_if<1>(&content_); }
+  [[nodiscard]] const Error& error() const { return std::get<1>(content_); }
 
  private:
   std::variant<T, Error> content_;
@@ -42,7 +42,7 @@ class [[nodiscard]] Result<void> {
 
   [[nodiscard]] bool ok() const { return !error_.has_value(); }
   explicit operator bool() const { return ok(); }
-  [[nodiscard]] const Error& error() const { return assert(!ok()), *error_; }
+  [[nodiscard]] const Error& error() const { return error_.value(); }
 
  private:
   std::optional<Error> error_;
