@@ -230,6 +230,7 @@ void brighten_box(cv::Mat& bgr, const IlluminationBox& box) {
   std::array<cv::Point2f, 4> corners;
   box.box.points(corners.data());
   std::vector<cv::Point> polygon;
+  polygon.reserve(corners.size());
   for (const cv::Point2f& corner : corners) {
     polygon.emplace_back(cvRound((corner.x - static_cast<float>(area.x)) * (1 << kShift)),
                          cvRound((corner.y - static_cast<float>(area.y)) * (1 << kShift)));

@@ -61,6 +61,7 @@ void AveragePrecision::add_class(std::vector<const AnnotatedInstance*> truth,
   std::vector<std::array<bool, kThresholds>> taken(truth.size());
   for (const Scored& detection : detections) {
     std::vector<double> overlaps;
+    overlaps.reserve(truth.size());
     for (const auto* t : truth) overlaps.push_back(overlap_of(*t, *detection.instance, overlap_));
     Outcome outcome;
     outcome.score = detection.score;

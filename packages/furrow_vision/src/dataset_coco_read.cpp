@@ -190,7 +190,7 @@ void read_instance(const Node& node, const std::map<std::int64_t, Category>& cat
   instance.crowd = node.has("iscrowd") && node.at("iscrowd").truth();
   if (node.has("keypoints") && found->second.stem_keypoint >= 0) {
     const Node keypoints = node.at("keypoints");
-    const auto at = static_cast<std::size_t>(3 * found->second.stem_keypoint);
+    const auto at = 3 * static_cast<std::size_t>(found->second.stem_keypoint);
     if (keypoints.size() < at + 3) throw Malformed{keypoints.key(), "is shorter than its category"};
     if (keypoints.entry(at + 2).integer(0, 2) > 0) {
       instance.stem_px = {keypoints.entry(at).number(), keypoints.entry(at + 1).number()};

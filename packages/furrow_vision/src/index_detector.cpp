@@ -120,6 +120,7 @@ Result<std::vector<Instance>> IndexDetector::detect(const RgbdView& view) {
     crop_row_u_px_ = view.crop_row_u_px;
   } else if (spacing_px >= kMinRowSpacing_px) {
     std::vector<RowVote> votes;
+    votes.reserve(plants.size());
     for (const Instance& plant : plants) {
       votes.push_back({plant.stem_px.x(), std::min(plant.area_mm2, p.crop_area_mm2)});
     }
