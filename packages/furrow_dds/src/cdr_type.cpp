@@ -1,6 +1,7 @@
 #include "cdr_type.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 namespace furrow::dds {
 
@@ -10,6 +11,8 @@ namespace {
 // The first payloads of a pool are made this large; each grows to what it has to hold.
 constexpr std::uint32_t kInitialPayloadBytes = 256;
 constexpr std::size_t kEncapsulationBytes = 4;
+// Smaller messages are not worth keeping the memory.
+constexpr std::size_t kReuseBytes = 65536;
 }  // namespace
 
 std::size_t OutgoingMessage::serialize(std::span<std::byte> out) const {
@@ -19,8 +22,26 @@ std::size_t OutgoingMessage::serialize(std::span<std::byte> out) const {
 
 void IncomingMessage::deserialize(std::span<const std::byte> in) {
   size_ = in.size();
-  std::shared_ptr<void> message = type_.create();
+  std::shared_ptr<void> message = make_message();
   message_ = type_.deserialize(in, message.get()) ? std::move(message) : nullptr;
+}
+
+std::shared_ptr<void> IncomingMessage::make_message() {
+  if (size_ < kReuseBytes) {
+    return type_.create();
+  }
+  for (auto& kept : kept_) {
+    if (kept == nullptr) {
+      kept = type_.create();
+      return kept;
+    }
+    if (kept.use_count() == 1) {
+      // What the last holder read happened before we write.
+      std::atomic_thread_fence(std::memory_order_acquire);
+      return kept;
+    }
+  }
+  return type_.create();
 }
 
 std::size_t OutgoingBytes::serialize(std::span<std::byte> out) const {

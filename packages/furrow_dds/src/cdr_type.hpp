@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <span>
@@ -36,6 +37,8 @@ class OutgoingMessage final : public WireData {
   std::size_t size_;
 };
 
+/// Reads into a new message, or, when it is large, into one that it made before and that nobody
+/// holds any more: allocating and clearing a camera image costs as much as copying it.
 class IncomingMessage final : public WireData {
  public:
   explicit IncomingMessage(const msgs::MessageType& type) : type_(type) {}
@@ -46,9 +49,14 @@ class IncomingMessage final : public WireData {
   void deserialize(std::span<const std::byte> in) override;
 
  private:
+  static constexpr std::size_t kKept = 4;
+
+  [[nodiscard]] std::shared_ptr<void> make_message();
+
   const msgs::MessageType& type_;
   graph::MessagePtr message_;
   std::size_t size_ = 0;
+  std::array<std::shared_ptr<void>, kKept> kept_;
 };
 
 class OutgoingBytes final : public WireData {

@@ -71,6 +71,9 @@ class BytesWriter final : public RawWriter {
       : writer_(participant, topic, type_name, nullptr, qos) {}
   [[nodiscard]] bool has_readers() const override { return writer_.has_readers(); }
   void write(RawPayload payload) override { writer_.write(std::move(payload)); }
+  [[nodiscard]] bool write_now(const std::vector<std::byte>& payload) override {
+    return writer_.write_now(payload);
+  }
   [[nodiscard]] graph::WireCounters counters() const override { return writer_.counters(); }
 
  private:

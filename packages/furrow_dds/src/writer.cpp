@@ -60,7 +60,11 @@ bool Writer::send(const graph::MessagePtr& message, std::size_t size) {
     OutgoingMessage data(*type_, message.get(), size);
     return writer_->write(static_cast<WireData*>(&data));
   }
-  OutgoingBytes data(*static_cast<const std::vector<std::byte>*>(message.get()));
+  return write_now(*static_cast<const std::vector<std::byte>*>(message.get()));
+}
+
+bool Writer::write_now(const std::vector<std::byte>& payload) {
+  OutgoingBytes data(payload);
   return writer_->write(static_cast<WireData*>(&data));
 }
 

@@ -108,6 +108,22 @@ TEST(Raw, PayloadsWithoutEncapsulationAreRefused) {
   EXPECT_EQ(writer->counters().messages, 0U);
 }
 
+TEST(Raw, WritesOnTheCallingThread) {
+  DdsTransport a(test_parameters("a"));
+  DdsTransport b(test_parameters("b"));
+  StringInbox inbox;
+  const auto reader = b.make_reader("text", string_type(), msgs::event_qos(), inbox.handler());
+  const auto writer =
+      a.make_raw_writer("text", std::string(string_type().dds_name), msgs::event_qos());
+  ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
+  StringMessage message;
+  message.data("at once");
+  EXPECT_TRUE(writer->write_now(cdr_of(message)));
+  EXPECT_FALSE(writer->write_now(std::vector<std::byte>(3)));
+  ASSERT_TRUE(inbox.wait_for(1));
+  EXPECT_EQ(inbox.items(), std::vector<std::string>{"at once"});
+}
+
 TEST(Raw, TypedAndRawEndpointsShareATopic) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));

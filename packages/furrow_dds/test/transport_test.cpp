@@ -69,6 +69,25 @@ TEST_P(RoundTrip, AnImageOfSixMegabytesArrivesWhole) {
   }
 }
 
+TEST(Transport, AMessageThatIsHeldIsNotWrittenOver) {
+  DdsTransport a(test_parameters("a"));
+  DdsTransport b(test_parameters("b"));
+  Inbox<graph::MessagePtr> held;
+  const auto reader = b.make_reader("image", image_type(), msgs::event_qos(),
+                                    [&](graph::MessagePtr message) { held.put(message); });
+  const auto writer = a.make_writer("image", image_type(), msgs::event_qos());
+  ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
+  std::vector<std::shared_ptr<const Image>> sent;
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    sent.push_back(make_image(200'000, i));
+    writer->write(sent.back());
+  }
+  ASSERT_TRUE(held.wait_for(sent.size()));
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    EXPECT_TRUE(*static_cast<const Image*>(held.items()[i].get()) == *sent[i]) << i;
+  }
+}
+
 TEST(Transport, AWriterHasNoReadersUntilOneIsOutside) {
   DdsTransport a(test_parameters("a"));
   StringInbox own;

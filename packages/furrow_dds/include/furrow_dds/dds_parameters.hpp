@@ -16,7 +16,7 @@ struct DdsParameters {
   std::vector<std::string> interfaces = {"127.0.0.1"};
   std::string discovery = "multicast";
   std::vector<std::string> peers;
-  std::int64_t shm_segment_mb = 64;
+  std::int64_t shm_segment_mb = 32;
   std::int64_t socket_buffer_kb = 4096;
   double lease_s = 3.0;
   std::int64_t bulk_threshold_kb = 64;
@@ -48,8 +48,8 @@ struct DdsParameters {
             peers);
     v.visit({.name = "shm_segment_mb",
              .unit = "MB",
-             .description = "shared memory of this process for messages on their way; at least "
-                            "ten of the largest",
+             .description = "shared memory of this process for messages on their way, taken at "
+                            "once; at least twice the largest",
              .min = 1,
              .max = 4000},
             shm_segment_mb);

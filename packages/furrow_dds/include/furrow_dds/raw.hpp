@@ -40,6 +40,10 @@ class RawWriter {
   /// `payload`: the CDR form behind its encapsulation header. Shorter ones than that, and null, are
   /// dropped and counted.
   virtual void write(RawPayload payload) = 0;
+  /// Sends on the calling thread, past the queue, and may block: the plain middleware, for
+  /// measuring. False when it was refused. Not for use beside write(): they may overtake each
+  /// other.
+  [[nodiscard]] virtual bool write_now(const std::vector<std::byte>& payload) = 0;
   [[nodiscard]] virtual graph::WireCounters counters() const = 0;
 };
 
