@@ -10,5 +10,6 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_graph_command(CLI::App& app, int& exit_code);
 void add_params_command(CLI::App& app, int& exit_code);
 void add_field_command(CLI::App& app, int& exit_code);
+void add_topic_command(CLI::App& app, int& exit_code);
 
 }  // namespace furrow::cli
