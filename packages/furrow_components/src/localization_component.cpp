@@ -2,7 +2,9 @@
 #include <string>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/georeference.hpp"
 #include "furrow_graph/registry.hpp"
+#include "furrow_graph/stamp.hpp"
 #include "furrow_localization/odometry_integrator.hpp"
 #include "furrow_localization/pose_filter.hpp"
 #include "furrow_msgs/tf2_msgs.h"
@@ -14,16 +16,26 @@ namespace topics = msgs::topics;
 
 struct Parameters {
   std::string estimator = "odometry";
+  std::string start = "wheels";
   double speed_variance = 1e-8;
   double yaw_rate_variance = 1e-8;
+  double imu_yaw_rate_variance = 2.5e-5;
   double tf_rate_hz = 25.0;
   localization::OdometryIntegratorParameters odometry;
+  localization::PoseFilterParameters filter;
+  GeoreferenceParameters georeference;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "estimator",
-             .description = "odometry: wheels alone, dead-reckoned",
-             .choices = {"odometry"}},
+             .description = "odometry: wheels alone, dead-reckoned; filter: wheels, IMU and GNSS "
+                            "fused, whichever of them come",
+             .choices = {"odometry", "filter"}},
             estimator);
+    v.visit({.name = "start",
+             .description = "wheels: where the wheels' first message says; parameters: at the "
+                            "initial pose below",
+             .choices = {"wheels", "parameters"}},
+            start);
     v.visit({.name = "speed_variance",
              .unit = "(m/s)2",
              .description = "of the wheels, where the message tells none",
@@ -34,6 +46,11 @@ struct Parameters {
              .description = "of the wheels, where the message tells none",
              .min = 0.0},
             yaw_rate_variance);
+    v.visit({.name = "imu_yaw_rate_variance",
+             .unit = "(rad/s)2",
+             .description = "of the gyroscope, where the message tells none",
+             .min = 0.0},
+            imu_yaw_rate_variance);
     v.visit({.name = "tf_rate_hz",
              .unit = "Hz",
              .description = "transforms for viewers",
@@ -41,8 +58,32 @@ struct Parameters {
              .max = 200.0},
             tf_rate_hz);
     odometry.visit(v);
+    PrefixedVisitor filter_visitor(v, "filter_");
+    filter.visit(filter_visitor);
+    georeference.visit(v);
   }
 };
+
+std::unique_ptr<localization::PoseEstimator> make_estimator(const Parameters& parameters) {
+  if (parameters.estimator == "filter") {
+    return std::make_unique<localization::PoseFilter>(parameters.filter);
+  }
+  return std::make_unique<localization::OdometryIntegrator>(parameters.odometry);
+}
+
+/// How well the first pose of the wheels is known: dead reckoning takes it as exact.
+Eigen::Matrix3d start_covariance(const Parameters& parameters) {
+  if (parameters.estimator != "filter") return Eigen::Matrix3d::Zero();
+  const double position_m = parameters.filter.initial_position_sigma_m;
+  const double heading_rad = parameters.filter.initial_heading_sigma_rad;
+  return Eigen::Vector3d(position_m * position_m, position_m * position_m,
+                         heading_rad * heading_rad)
+      .asDiagonal();
+}
+
+double told_or(double told, double otherwise) {
+  return told > 0.0 ? told : otherwise;
+}
 
 graph::HealthLevel to_health(localization::HealthLevel level) {
   switch (level) {
@@ -63,6 +104,8 @@ class Localization final : public graph::Component {
     d.doc("Pose of the base in the field frame.")
         .parameters<Parameters>()
         .input<topics::WheelOdometry>()
+        .input<topics::Imu>(graph::Need::kOptional)
+        .input<topics::GnssFix>(graph::Need::kOptional)
         .output<topics::RobotOdometry>()
         .output<topics::Transforms>();
   }
@@ -70,35 +113,58 @@ class Localization final : public graph::Component {
   explicit Localization(graph::Context& context)
       : context_(context),
         parameters_(context.parameters<Parameters>()),
-        estimator_(std::make_unique<localization::OdometryIntegrator>(parameters_.odometry)),
+        estimator_(make_estimator(parameters_)),
+        georeference_(parameters_.georeference),
         odometry_out_(context.output<topics::RobotOdometry>()),
         transforms_out_(context.output<topics::Transforms>()) {
-    context.input<topics::WheelOdometry>(
-        [this](const auto& message) { measured(from_msg(*message)); });
+    started_ = parameters_.start == "parameters";
+    context.input<topics::WheelOdometry>([this](const auto& message) { measured(*message); });
+    context.input<topics::Imu>([this](const auto& message) {
+      count("imu_", estimator_->add(localization::ImuYawRate{
+                        graph::from_msg(message->header().stamp()), message->angular_velocity().z(),
+                        told_or(message->angular_velocity_covariance()[8],
+                                parameters_.imu_yaw_rate_variance)}));
+    });
+    context.input<topics::GnssFix>([this](const auto& message) {
+      count("gnss_", estimator_->add(georeference_.from_msg(*message)));
+    });
     context.every(Duration::seconds(1.0 / parameters_.tf_rate_hz),
                   [this](Time now) { publish_transform(now); });
   }
 
  private:
-  void measured(const BaseOdometry& wheels) {
+  void count(const std::string& sensor, localization::Outcome outcome) {
+    if (outcome == localization::Outcome::kUsed) return;
+    if (outcome == localization::Outcome::kIgnored) return;
+    context_.count(sensor + std::string(localization::to_string(outcome)));
+  }
+
+  void measured(const nav_msgs::msg::Odometry& message) {
+    const BaseOdometry wheels = from_msg(message);
     // The frame that wheels start in is the field frame; only its first pose is taken over.
     if (!started_) {
-      const Status reset = estimator_->reset(wheels.stamp, wheels.X_FB, Eigen::Matrix3d::Zero());
+      const Status reset =
+          estimator_->reset(wheels.stamp, wheels.X_FB, start_covariance(parameters_));
       if (!reset.ok()) {
         context_.count("rejected");
         return;
       }
       started_ = true;
     }
-    const auto outcome = estimator_->add(
-        localization::WheelOdometry{wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps,
-                                    parameters_.speed_variance, parameters_.yaw_rate_variance});
-    if (outcome != localization::Outcome::kUsed) context_.count(localization::to_string(outcome));
-    const auto health = estimator_->health(wheels.stamp);
+    const auto& told = message.twist().covariance();
+    count("wheels_", estimator_->add(localization::WheelOdometry{
+                         wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps,
+                         told_or(told[0], parameters_.speed_variance),
+                         told_or(told[35], parameters_.yaw_rate_variance)}));
+    publish_pose(wheels.stamp);
+  }
+
+  void publish_pose(Time stamp) {
+    const auto health = estimator_->health(stamp);
     context_.health(to_health(health.level), health.level == localization::HealthLevel::kOk
                                                  ? ""
                                                  : "the pose is uncertain or old");
-    const auto estimate = estimator_->predict(wheels.stamp);
+    const auto estimate = estimator_->predict(stamp);
     if (!estimate.ok()) {
       context_.count("no_pose");
       return;
@@ -114,11 +180,14 @@ class Localization final : public graph::Component {
             estimate->covariance(row, column);
       }
     }
+    message.twist().covariance()[0] = estimate->twist_covariance(0, 0);
+    message.twist().covariance()[35] = estimate->twist_covariance(1, 1);
     odometry_out_.publish(std::move(message));
+    known_ = true;
   }
 
   void publish_transform(Time /*now*/) const {
-    if (!started_) return;
+    if (!known_) return;
     tf2_msgs::msg::TFMessage message;
     auto& transform = message.transforms().emplace_back();
     transform.header(header(newest_.stamp, kFieldFrame));
@@ -132,10 +201,12 @@ class Localization final : public graph::Component {
   graph::Context& context_;
   Parameters parameters_;
   std::unique_ptr<localization::PoseEstimator> estimator_;
+  Georeference georeference_;
   graph::Output<topics::RobotOdometry> odometry_out_;
   graph::Output<topics::Transforms> transforms_out_;
   BaseOdometry newest_;
   bool started_ = false;
+  bool known_ = false;  ///< newest_ holds a pose
 };
 
 }  // namespace

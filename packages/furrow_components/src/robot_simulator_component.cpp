@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/georeference.hpp"
 #include "furrow_components/pose_buffer.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
@@ -25,8 +27,13 @@ struct Parameters {
   double run_in_m = 2.0;
   double run_out_m = 1.0;
   double rate_hz = 100.0;
+  double imu_rate_hz = 100.0;
+  double gnss_rate_hz = 5.0;
   simulation::RobotMotionParameters motion;
   simulation::WheelOdometryParameters wheel;
+  simulation::ImuParameters imu;
+  simulation::GnssParameters gnss;
+  GeoreferenceParameters georeference;
   simulation::SprayParameters spray;
 
   void visit(ParameterVisitor& v) {
@@ -51,25 +58,62 @@ struct Parameters {
             run_out_m);
     v.visit({.name = "rate_hz", .unit = "Hz", .description = "odometry", .min = 1.0, .max = 1000.0},
             rate_hz);
+    v.visit({.name = "imu_rate_hz",
+             .unit = "Hz",
+             .description = "inertial measurements",
+             .min = 1.0,
+             .max = 1000.0},
+            imu_rate_hz);
+    v.visit({.name = "gnss_rate_hz",
+             .unit = "Hz",
+             .description = "positions of the antenna",
+             .min = 0.1,
+             .max = 100.0},
+            gnss_rate_hz);
     motion.visit(v);
     PrefixedVisitor wheel_visitor(v, "wheel_");
     wheel.visit(wheel_visitor);
+    PrefixedVisitor imu_visitor(v, "imu_");
+    imu.visit(imu_visitor);
+    PrefixedVisitor gnss_visitor(v, "gnss_");
+    gnss.visit(gnss_visitor);
+    georeference.visit(v);
     PrefixedVisitor spray_visitor(v, "spray_");
     spray.visit(spray_visitor);
   }
 };
 
-/// The simulated world but for its looks: drives the robot, measures its wheels, and lets what the
-/// valves release fall to the ground.
+localization::FixQuality quality_of(simulation::GnssQuality quality) {
+  switch (quality) {
+    case simulation::GnssQuality::kNone:
+      return localization::FixQuality::kNone;
+    case simulation::GnssQuality::kSingle:
+      return localization::FixQuality::kSingle;
+    case simulation::GnssQuality::kFloat:
+      return localization::FixQuality::kRtkFloat;
+    case simulation::GnssQuality::kFixed:
+      break;
+  }
+  return localization::FixQuality::kRtkFixed;
+}
+
+double squared(double value) {
+  return value * value;
+}
+
+/// The simulated world but for its looks: drives the robot, measures its wheels, turning and
+/// position, and lets what the valves release fall to the ground.
 class RobotSimulator final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Simulated robot: true motion, wheel odometry, and where sprays land.")
+    d.doc("Simulated robot: true motion, wheel odometry, IMU, GNSS, and where sprays land.")
         .parameters<Parameters>()
         .input<topics::AxisEvent>(graph::Need::kOptional)
         .input<topics::TrueField>(graph::Need::kOptional)
         .output<topics::TrueOdometry>()
         .output<topics::WheelOdometry>()
+        .output<topics::Imu>()
+        .output<topics::GnssFix>()
         .output<topics::TrueSpray>()
         .output<topics::RunStatus>();
   }
@@ -80,9 +124,14 @@ class RobotSimulator final : public graph::Component {
         tool_(geometry::load_tool_model(parameters_.tool_file)),
         truth_(context.output<topics::TrueOdometry>()),
         wheels_out_(context.output<topics::WheelOdometry>()),
+        imu_out_(context.output<topics::Imu>()),
+        gnss_out_(context.output<topics::GnssFix>()),
         spray_out_(context.output<topics::TrueSpray>()),
         status_out_(context.output<topics::RunStatus>()),
+        georeference_(parameters_.georeference),
         wheel_(parameters_.wheel, context.seed()),
+        imu_(parameters_.imu, context.seed()),
+        gnss_(parameters_.gnss, context.seed()),
         length_m_(parameters_.length_m) {
     parameters_.motion.start_x_m = -parameters_.run_in_m;
     for (std::size_t i = 0; i < tool_.axes.size(); ++i) {
@@ -94,6 +143,10 @@ class RobotSimulator final : public graph::Component {
     });
     context.input<topics::AxisEvent>([this](const auto& event) { land(*event); });
     context.every(Duration::seconds(1.0 / parameters_.rate_hz), [this](Time now) { step(now); });
+    context.every(Duration::seconds(1.0 / parameters_.imu_rate_hz),
+                  [this](Time now) { measure_turning(now); });
+    context.every(Duration::seconds(1.0 / parameters_.gnss_rate_hz),
+                  [this](Time now) { measure_position(now); });
   }
 
  private:
@@ -110,9 +163,55 @@ class RobotSimulator final : public graph::Component {
 
     const simulation::WheelReading reading = wheel_.measure(state);
     reckon(reading, now);
-    wheels_out_.publish(
-        to_msg(BaseOdometry{now, reckoned_, reading.speed_mps, reading.yaw_rate_radps}, "odom"));
+    nav_msgs::msg::Odometry wheels =
+        to_msg(BaseOdometry{now, reckoned_, reading.speed_mps, reading.yaw_rate_radps}, "odom");
+    // Of the 6x6 over (x, y, z, roll, pitch, yaw): what the wheels claim of speed and turning.
+    wheels.twist().covariance()[0] = squared(parameters_.wheel.speed_noise_mps);
+    wheels.twist().covariance()[35] = squared(parameters_.wheel.yaw_rate_noise_radps);
+    wheels_out_.publish(std::move(wheels));
+    hand_out_positions(now);
     report(state, now);
+  }
+
+  void measure_turning(Time now) {
+    if (motion_ == nullptr) return;
+    const simulation::ImuReading reading = imu_.measure(motion_->advance_to(now));
+    sensor_msgs::msg::Imu message;
+    message.header(header(reading.time, kBaseFrame));
+    message.orientation_covariance()[0] = -1.0;  // by the message's rule: no orientation
+    message.angular_velocity().x(reading.angular_velocity_B_radps.x());
+    message.angular_velocity().y(reading.angular_velocity_B_radps.y());
+    message.angular_velocity().z(reading.angular_velocity_B_radps.z());
+    message.linear_acceleration().x(reading.acceleration_B_mps2.x());
+    message.linear_acceleration().y(reading.acceleration_B_mps2.y());
+    message.linear_acceleration().z(reading.acceleration_B_mps2.z());
+    for (const std::size_t i : {0, 4, 8}) {
+      message.angular_velocity_covariance()[i] = squared(parameters_.imu.gyro_noise_radps);
+      message.linear_acceleration_covariance()[i] =
+          squared(parameters_.imu.accelerometer_noise_mps2);
+    }
+    imu_out_.publish(std::move(message));
+  }
+
+  void measure_position(Time now) {
+    if (motion_ == nullptr) return;
+    if (const auto reading = gnss_.measure(motion_->advance_to(now))) {
+      positions_.push_back(*reading);
+    }
+    hand_out_positions(now);
+  }
+
+  // The receiver needs its time; the stamp stays that of the antenna.
+  void hand_out_positions(Time now) {
+    while (!positions_.empty() && positions_.front().available <= now) {
+      const simulation::GnssReading& reading = positions_.front();
+      gnss_out_.publish(georeference_.to_msg(
+          {.stamp = reading.time,
+           .p_FA_m = reading.p_F_m,
+           .quality = quality_of(reading.quality),
+           .covariance = Eigen::Matrix2d::Identity() * squared(reading.standard_deviation_m)}));
+      positions_.pop_front();
+    }
   }
 
   // The pose that wheels alone would tell, in a frame that starts as the field frame.
@@ -201,9 +300,15 @@ class RobotSimulator final : public graph::Component {
   geometry::ToolModel tool_;
   graph::Output<topics::TrueOdometry> truth_;
   graph::Output<topics::WheelOdometry> wheels_out_;
+  graph::Output<topics::Imu> imu_out_;
+  graph::Output<topics::GnssFix> gnss_out_;
   graph::Output<topics::TrueSpray> spray_out_;
   graph::Output<topics::RunStatus> status_out_;
+  Georeference georeference_;
   simulation::WheelOdometry wheel_;
+  simulation::Imu imu_;
+  simulation::Gnss gnss_;
+  std::deque<simulation::GnssReading> positions_;  ///< measured, not yet handed out
   std::unique_ptr<simulation::RobotMotion> motion_;
   PoseBuffer truth_buffer_{Duration::seconds(2.0)};
   std::map<std::string, simulation::SimulatedValve> valves_;

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/observation_conversion.hpp"
 #include "furrow_components/pose_buffer.hpp"
+#include "furrow_components/track_field.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
-#include "furrow_tracking/reprojection.hpp"
 #include "furrow_tracking/tracker.hpp"
 
 namespace furrow::components {
@@ -19,24 +20,14 @@ namespace topics = msgs::topics;
 
 struct Parameters {
   std::string tool_file;
-  double pixel_noise_px = 1.5;
-  double depth_noise_m = 0.005;
+  ObservationParameters observation;
+  TrackFieldParameters field;
   tracking::TrackerParameters tracker;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
-    v.visit({.name = "pixel_noise_px",
-             .unit = "px",
-             .description = "standard deviation of a stem's pixel",
-             .min = 0.01,
-             .max = 100.0},
-            pixel_noise_px);
-    v.visit({.name = "depth_noise_m",
-             .unit = "m",
-             .description = "standard deviation of a depth",
-             .min = 1e-4,
-             .max = 1.0},
-            depth_noise_m);
+    observation.visit(v);
+    field.visit(v);
     tracker.visit(v);
   }
 };
@@ -54,6 +45,7 @@ class TrackerComponent final : public graph::Component {
         .parameters<Parameters>()
         .input<topics::RobotOdometry>()
         .input<topics::Instances>()
+        .input<topics::RunStatus>(graph::Need::kOptional)
         .output<topics::Tracks>();
   }
 
@@ -66,7 +58,11 @@ class TrackerComponent final : public graph::Component {
         tracker_(parameters_.tracker),
         out_(context.output<topics::Tracks>()) {
     context.input<topics::RobotOdometry>([this](const auto& message) {
-      if (!poses_.add(from_msg(*message)).ok()) context_.count("bad_odometry");
+      if (poses_.add(from_msg(*message)).ok()) {
+        remember_covariance(*message);
+      } else {
+        context_.count("bad_odometry");
+      }
       work_off();
     });
     context.input<topics::Instances>([this](const auto& message) {
@@ -77,10 +73,28 @@ class TrackerComponent final : public graph::Component {
       }
       work_off();
     });
+    context.input<topics::RunStatus>([this](const auto& status) {
+      if (status->finished() && !parameters_.field.field_model_file.empty()) save_field();
+    });
   }
 
  private:
   static constexpr std::size_t kMaxWaiting = 8;
+  static constexpr std::size_t kMaxCovariances = 512;
+  static constexpr std::size_t kMaxEnded = 1'000'000;
+
+  void remember_covariance(const nav_msgs::msg::Odometry& message) {
+    covariances_.emplace_back(graph::from_msg(message.header().stamp()),
+                              planar_covariance(message));
+    if (covariances_.size() > kMaxCovariances) covariances_.pop_front();
+  }
+
+  // That of the newest pose not after the stamp.
+  [[nodiscard]] Eigen::Matrix3d covariance_at(Time stamp) const {
+    const auto after = std::ranges::upper_bound(covariances_, stamp, {},
+                                                [](const auto& entry) { return entry.first; });
+    return after == covariances_.begin() ? covariances_.front().second : std::prev(after)->second;
+  }
 
   // An image waits until the pose at its stamp is known.
   void work_off() {
@@ -101,13 +115,15 @@ class TrackerComponent final : public graph::Component {
 
   void update(const furrow_msgs::msg::PlantInstances& message, const BaseOdometry& pose) {
     const Eigen::Isometry3d X_FC = geometry::to_isometry(pose.X_FB) * camera_model_.X_BC;
-    tracking::View view{.stamp = pose.stamp, .X_FB = pose.X_FB};
+    tracking::View view{
+        .stamp = pose.stamp, .X_FB = pose.X_FB, .pose_covariance = covariance_at(pose.stamp)};
     if (auto visible = tracking::visible_ground(camera_, X_FC); visible.ok()) {
       view.visible = std::move(visible).value();
     }
     std::vector<tracking::Observation> observations;
     for (const auto& instance : message.instances()) {
-      if (auto seen = observe(instance, X_FC); seen.ok()) {
+      if (auto seen = observe(instance, camera_, X_FC, parameters_.observation); seen.ok()) {
+        if (!instance.species().empty()) vote(instance.species(), *seen);
         observations.push_back(std::move(seen).value());
       } else {
         context_.count("bad_instances");
@@ -121,32 +137,25 @@ class TrackerComponent final : public graph::Component {
     if (!summary.ok()) context_.count("bad_views");
     context_.health(summary.ok() ? graph::HealthLevel::kOk : graph::HealthLevel::kWarn,
                     summary.ok() ? "" : "a view or an observation was not valid");
+    if (!parameters_.field.field_model_file.empty()) keep_ended();
     publish(pose.stamp);
   }
 
-  [[nodiscard]] Result<tracking::Observation> observe(
-      const furrow_msgs::msg::PlantInstance& instance, const Eigen::Isometry3d& X_FC) {
-    const Eigen::Vector2d pixel(instance.stem_u_px(), instance.stem_v_px());
-    const auto point =
-        tracking::reproject_point(camera_, X_FC, pixel, instance.stem().z(),
-                                  {parameters_.pixel_noise_px, parameters_.depth_noise_m});
-    if (!point.ok()) return point.error();
-    tracking::Observation observation;
-    observation.p_F_m = point->p_F_m.head<2>();
-    observation.covariance_F_m2 = point->covariance_F_m2;
-    observation.radius_m = instance.radius_m();
-    observation.area_mm2 = instance.area_mm2();
-    observation.score = instance.score();
-    const double crop = instance.crop_probability();
-    observation.class_probability = {crop, 1.0 - crop};
-    const auto& box = instance.box();
-    const auto& size = camera_.intrinsics();
-    observation.truncated =
-        box.x_offset() == 0 || box.y_offset() == 0 ||
-        box.x_offset() + box.width() >= static_cast<std::uint32_t>(size.width_px) ||
-        box.y_offset() + box.height() >= static_cast<std::uint32_t>(size.height_px);
-    if (!instance.species().empty()) vote(instance.species(), observation);
-    return observation;
+  void keep_ended() {
+    for (const tracking::Track& track : tracker_.ended()) {
+      if (!track.confirmed || track.end_reason == tracking::EndReason::kMerged) continue;
+      if (ended_.size() < kMaxEnded) ended_.push_back(track);
+    }
+  }
+
+  void save_field() {
+    std::vector<tracking::Track> all = ended_;
+    all.insert(all.end(), tracker_.tracks().begin(), tracker_.tracks().end());
+    const field::FieldModel field = field_of_tracks(all, species_names_, parameters_.field);
+    if (const Status saved = write_field(field, parameters_.field.field_model_file); !saved.ok()) {
+      context_.health(graph::HealthLevel::kError, saved.error().message);
+      context_.count("fields_not_saved");
+    }
   }
 
   void vote(const std::string& species, tracking::Observation& observation) {
@@ -207,6 +216,8 @@ class TrackerComponent final : public graph::Component {
   graph::Output<topics::Tracks> out_;
   PoseBuffer poses_{Duration::seconds(5.0)};
   std::deque<std::shared_ptr<const furrow_msgs::msg::PlantInstances>> waiting_;
+  std::deque<std::pair<Time, Eigen::Matrix3d>> covariances_;
+  std::vector<tracking::Track> ended_;  ///< for the field model, when one is asked for
   std::vector<std::string> species_names_;
 };
 

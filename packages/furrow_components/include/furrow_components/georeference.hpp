@@ -1,0 +1,40 @@
+#pragma once
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_localization/geodetic.hpp"
+#include "furrow_localization/measurement.hpp"
+#include "furrow_msgs/sensor_msgs.h"
+
+namespace furrow::components {
+
+/// Where the field frame lies on the earth, as parameters.
+struct GeoreferenceParameters {
+  double origin_latitude_deg = 50.6150;
+  double origin_longitude_deg = 6.9870;
+  double origin_altitude_m = 170.0;
+  double row_angle_deg = 0.0;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// A NavSatFix in the field frame and back.
+class Georeference {
+ public:
+  /// Throws ConfigError.
+  explicit Georeference(const GeoreferenceParameters& parameters);
+
+  /// Status GBAS stands for RTK, fixed when the claimed standard deviation is at most
+  /// kFixedSigma_m; a covariance of unknown type leaves the measurement's own empty.
+  [[nodiscard]] localization::GnssPosition from_msg(const sensor_msgs::msg::NavSatFix& fix) const;
+  /// A covariance of zero is told as unknown.
+  [[nodiscard]] sensor_msgs::msg::NavSatFix to_msg(
+      const localization::GnssPosition& position) const;
+
+  static constexpr double kFixedSigma_m = 0.05;
+
+ private:
+  localization::FieldGeoreference georeference_;
+  Eigen::Matrix2d R_EF_;  ///< from the field frame to east and north
+};
+
+}  // namespace furrow::components

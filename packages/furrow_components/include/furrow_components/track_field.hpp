@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_core/result.hpp"
+#include "furrow_field/field_model.hpp"
+#include "furrow_tracking/track.hpp"
+
+namespace furrow::components {
+
+/// How a run's tracks are saved as a field model.
+struct TrackFieldParameters {
+  std::string field_model_file;  ///< .csv or .geojson; empty: none is saved
+  double length_m = 20.0;
+  std::string field_model_crop_species = "sugar_beet";
+  std::string field_model_weed_species;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// The strip of field that the robot saw, with each confirmed track as a plant. Kept is what stands
+/// at x in [0, length_m]; the width is the least that holds it. Rows are where crops line up:
+/// groups of at least five, more than 0.2 m from the next crop across. A track without a species
+/// takes the parameters' name for its kind. `species` names the tracks' votes.
+[[nodiscard]] field::FieldModel field_of_tracks(std::span<const tracking::Track> tracks,
+                                                std::span<const std::string> species,
+                                                const TrackFieldParameters& parameters);
+
+/// Writes the field whole or not at all, by the extension of the file.
+[[nodiscard]] Status write_field(const field::FieldModel& field, const std::string& file);
+
+}  // namespace furrow::components

@@ -1,0 +1,135 @@
+#include "furrow_components/georeference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_graph/stamp.hpp"
+
+namespace furrow::components {
+namespace {
+
+using localization::FixQuality;
+using localization::GnssPosition;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// sensor_msgs/NavSatStatus and NavSatFix; the status is a signed byte there.
+constexpr std::uint8_t kNoFix = 255;
+constexpr std::uint8_t kPlainFix = 0;
+constexpr std::uint8_t kSatelliteAugmented = 1;
+constexpr std::uint8_t kGroundAugmented = 2;
+constexpr std::uint8_t kCovarianceUnknown = 0;
+constexpr std::uint8_t kCovarianceKnown = 3;
+
+localization::FieldGeoreference make(const GeoreferenceParameters& p) {
+  auto made = localization::FieldGeoreference::at(
+      {p.origin_latitude_deg * kRadPerDeg, p.origin_longitude_deg * kRadPerDeg,
+       p.origin_altitude_m},
+      p.row_angle_deg * kRadPerDeg);
+  if (!made.ok()) throw ConfigError("georeference: " + made.error().message);
+  return std::move(made).value();
+}
+
+std::uint8_t status_of(FixQuality quality) {
+  switch (quality) {
+    case FixQuality::kNone:
+      return kNoFix;
+    case FixQuality::kSingle:
+      return kPlainFix;
+    case FixQuality::kDifferential:
+      return kSatelliteAugmented;
+    case FixQuality::kRtkFloat:
+    case FixQuality::kRtkFixed:
+      break;
+  }
+  return kGroundAugmented;
+}
+
+FixQuality quality_of(std::uint8_t status, double sigma_m) {
+  switch (status) {
+    case kPlainFix:
+      return FixQuality::kSingle;
+    case kSatelliteAugmented:
+      return FixQuality::kDifferential;
+    case kGroundAugmented:
+      return sigma_m > Georeference::kFixedSigma_m ? FixQuality::kRtkFloat : FixQuality::kRtkFixed;
+    default:
+      return FixQuality::kNone;
+  }
+}
+
+}  // namespace
+
+void GeoreferenceParameters::visit(ParameterVisitor& v) {
+  v.visit({.name = "origin_latitude_deg",
+           .unit = "deg",
+           .description = "of the field frame's origin, WGS 84",
+           .min = -89.9,
+           .max = 89.9},
+          origin_latitude_deg);
+  v.visit({.name = "origin_longitude_deg",
+           .unit = "deg",
+           .description = "of the field frame's origin, WGS 84",
+           .min = -180.0,
+           .max = 180.0},
+          origin_longitude_deg);
+  v.visit({.name = "origin_altitude_m",
+           .unit = "m",
+           .description = "of the field frame's origin above the ellipsoid",
+           .min = -1000.0,
+           .max = 10000.0},
+          origin_altitude_m);
+  v.visit({.name = "row_angle_deg",
+           .unit = "deg",
+           .description = "direction of travel along the rows, counter-clockwise from east",
+           .min = -360.0,
+           .max = 360.0},
+          row_angle_deg);
+}
+
+Georeference::Georeference(const GeoreferenceParameters& parameters)
+    : georeference_(make(parameters)),
+      R_EF_(Eigen::Rotation2Dd(parameters.row_angle_deg * kRadPerDeg).toRotationMatrix()) {}
+
+GnssPosition Georeference::from_msg(const sensor_msgs::msg::NavSatFix& fix) const {
+  GnssPosition position{.stamp = graph::from_msg(fix.header().stamp())};
+  position.p_FA_m =
+      georeference_
+          .to_field({fix.latitude() * kRadPerDeg, fix.longitude() * kRadPerDeg, fix.altitude()})
+          .head<2>();
+  double sigma_m = 0.0;
+  if (fix.position_covariance_type() != kCovarianceUnknown) {
+    const auto& c = fix.position_covariance();
+    Eigen::Matrix2d covariance_E;
+    covariance_E << c[0], c[1], c[3], c[4];
+    position.covariance = R_EF_.transpose() * covariance_E * R_EF_;
+    sigma_m = std::sqrt(std::max({c[0], c[4], 0.0}));
+  }
+  position.quality = quality_of(static_cast<std::uint8_t>(fix.status().status()), sigma_m);
+  return position;
+}
+
+sensor_msgs::msg::NavSatFix Georeference::to_msg(const GnssPosition& position) const {
+  sensor_msgs::msg::NavSatFix fix;
+  fix.header(header(position.stamp, "gnss_antenna"));
+  fix.status().status(status_of(position.quality));
+  const auto geodetic = georeference_.to_geodetic({position.p_FA_m.x(), position.p_FA_m.y(), 0.0});
+  fix.latitude(geodetic.latitude_rad / kRadPerDeg);
+  fix.longitude(geodetic.longitude_rad / kRadPerDeg);
+  fix.altitude(geodetic.height_m);
+  fix.position_covariance_type(kCovarianceUnknown);
+  if (!position.covariance || position.covariance->isZero(0.0)) return fix;
+  const Eigen::Matrix2d covariance_E = R_EF_ * *position.covariance * R_EF_.transpose();
+  fix.position_covariance_type(kCovarianceKnown);
+  fix.position_covariance()[0] = covariance_E(0, 0);
+  fix.position_covariance()[1] = covariance_E(0, 1);
+  fix.position_covariance()[3] = covariance_E(1, 0);
+  fix.position_covariance()[4] = covariance_E(1, 1);
+  // Receivers are about half as good in height.
+  fix.position_covariance()[8] = 2.0 * covariance_E.trace();
+  return fix;
+}
+
+}  // namespace furrow::components
