@@ -1,13 +1,17 @@
 // Loss and replanning times of a planner over a stream of observations: a frame every 0.1 s at
-// 0.5 m/s, 1 m of look-ahead. Usage: stream_loss PLANNER ASSIGNMENT [VIEW [SEEDS [LENGTH_M]]]
+// 0.5 m/s, 1 m of look-ahead; beside it the optimum of sprays on stems with the whole field known,
+// and, where asked for, the loss that no placement of footprints can go below.
+// Usage: stream_loss PLANNER ASSIGNMENT [VIEW [SEEDS [LENGTH_M [KINEMATICS [bound]]]]]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 
 #include "furrow_planning/route_planner.hpp"
+#include "furrow_planning/upper_bound.hpp"
 #include "stream.hpp"
 
 namespace furrow::planning::bench {
@@ -66,7 +70,9 @@ Outcome drive(const PlannerParameters& parameters, const std::vector<Target>& fi
   return result;
 }
 
-double clairvoyant_loss_pct(PlannerParameters parameters, const std::vector<Target>& field) {
+/// Loss in % with the whole field known; by a planner, or by the bound on all footprints.
+double clairvoyant_loss_pct(bool bound, PlannerParameters parameters,
+                            const std::vector<Target>& field) {
   parameters.planner = "exact";
   parameters.assignment = "joint";
   const auto axes = four_axes();
@@ -75,15 +81,19 @@ double clairvoyant_loss_pct(PlannerParameters parameters, const std::vector<Targ
     states.push_back({.position_m = 1.39 * (static_cast<double>(a) + 0.5) / 4.0 - 0.695,
                       .free_from_x_m = -1.18});
   }
-  Plan plan;
-  const Status status = make_route_planner(parameters)
-                            ->plan({.targets = field,
-                                    .protected_plants = {},
-                                    .axes = axes,
-                                    .states = states,
-                                    .robot = {.x_m = -1.18}},
-                                   plan);
-  return status ? 100.0 * (1.0 - plan.weight / static_cast<double>(field.size())) : NAN;
+  const PlanningProblem problem{.targets = field,
+                                .protected_plants = {},
+                                .axes = axes,
+                                .states = states,
+                                .robot = {.x_m = -1.18}};
+  double weight = NAN;
+  if (bound) {
+    const auto limit = footprint_weight_bound(problem, parameters, {.iterations = 60});
+    weight = limit ? *limit : NAN;
+  } else if (Plan plan; make_route_planner(parameters)->plan(problem, plan)) {
+    weight = plan.weight;
+  }
+  return 100.0 * (1.0 - weight / static_cast<double>(field.size()));
 }
 
 int run(int argc, char** argv) {
@@ -93,25 +103,33 @@ int run(int argc, char** argv) {
   parameters.view = argc > 3 ? argv[3] : "rolling";
   const int seeds = argc > 4 ? std::atoi(argv[4]) : 20;
   const double length_m = argc > 5 ? std::atof(argv[5]) : 20.0;
-  std::printf("%s %s %s, %d seeds of %.0f m\n", parameters.planner.c_str(),
-              parameters.assignment.c_str(), parameters.view.c_str(), seeds, length_m);
+  parameters.kinematics = argc > 6 ? argv[6] : "velocity";
+  const bool with_bound = argc > 7;
+  std::printf("%s %s %s %s, %d seeds of %.0f m\n", parameters.planner.c_str(),
+              parameters.assignment.c_str(), parameters.view.c_str(), parameters.kinematics.c_str(),
+              seeds, length_m);
   std::printf("per m2   loss %%   optimum %%  travel m   replan us: p50    p99    max\n");
   for (const double density : {3.1, 8.2, 15.4, 22.3, 81.2}) {
     std::vector<double> times_us;
     double loss = 0.0;
     double optimum = 0.0;
+    double limit = 0.0;
     double travel = 0.0;
     for (int seed = 0; seed < seeds; ++seed) {
       const auto field = poisson_field(density, length_m, 1.39, static_cast<std::uint64_t>(seed));
       const Outcome outcome = drive(parameters, field, length_m, times_us);
       loss += outcome.loss_pct / seeds;
       travel += outcome.travel_m / seeds;
-      optimum += clairvoyant_loss_pct(parameters, field) / seeds;
+      optimum += clairvoyant_loss_pct(false, parameters, field) / seeds;
+      limit += with_bound ? clairvoyant_loss_pct(true, parameters, field) / seeds : 0.0;
     }
     std::sort(times_us.begin(), times_us.end());
     std::printf("%6.1f   %6.2f   %6.2f     %6.1f   %14.1f %6.1f %6.1f\n", density, loss, optimum,
                 travel, times_us[times_us.size() / 2], times_us[times_us.size() * 99 / 100],
                 times_us.back());
+    if (with_bound) {
+      std::printf("         at least %.2f with footprints placed anywhere\n", limit);
+    }
   }
   return 0;
 }

@@ -52,7 +52,7 @@ struct Scoring {
   double levels_per_m = 0.0;
 
   [[nodiscard]] std::int64_t travel(double dy_m) const {
-    return static_cast<std::int64_t>((dy_m < 0.0 ? -dy_m : dy_m) * levels_per_m + 0.5);
+    return static_cast<std::int64_t>((dy_m < 0.0 ? -dy_m : dy_m) * levels_per_m);
   }
 };
 
