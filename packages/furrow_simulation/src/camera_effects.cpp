@@ -158,7 +158,8 @@ void CameraEffects::filter_rows(const cv::Mat& source, cv::Mat& target, std::uin
   const double half_y = 0.5 * source.rows;
   const double scale = 256.0 * parameters_.vignetting / (half_x * half_x + half_y * half_y);
   for (int i = 0; i < count; ++i) {
-    const double dx = i / 3 + 0.5 - half_x;
+    const int column = i / 3;
+    const double dx = column + 0.5 - half_x;
     fall[i] = static_cast<std::uint16_t>(scale * dx * dx);
   }
   const auto amplitude =
@@ -173,7 +174,7 @@ void CameraEffects::filter_rows(const cv::Mat& source, cv::Mat& target, std::uin
       std::uint16_t* out = sum.data();
       for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(out[i] + weight * row[i]);
     }
-    std::uint8_t* middle = between.data() + 3 * radius_h;
+    std::uint8_t* middle = between.data() + 3 * static_cast<std::ptrdiff_t>(radius_h);
     for (int i = 0; i < count; ++i) middle[i] = static_cast<std::uint8_t>(sum[i] >> 8);
     for (int i = 0; i < 3 * radius_h; ++i) {
       between[i] = middle[i % 3];
@@ -181,7 +182,7 @@ void CameraEffects::filter_rows(const cv::Mat& source, cv::Mat& target, std::uin
     }
     std::fill(sum.begin(), sum.end(), std::uint16_t{128});
     for (int k = 0; k <= 2 * radius_h; ++k) {
-      const std::uint8_t* row = between.data() + 3 * k;
+      const std::uint8_t* row = between.data() + 3 * static_cast<std::ptrdiff_t>(k);
       const auto weight = static_cast<std::uint16_t>(horizontal[k]);
       std::uint16_t* out = sum.data();
       for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(out[i] + weight * row[i]);

@@ -137,14 +137,14 @@ double Ground::base_height_m(double x_F_m, double y_F_m) const {
 }
 
 double Ground::shadow_length_m(double height_m) const {
-  const Eigen::Vector3f& sun = light_.to_sun_F();
+  const Eigen::Vector3f& sun = light_.to_sun();
   const double slope = std::hypot(sun.x(), sun.y()) / sun.z();
   return height_m * slope + 0.02;
 }
 
 void Ground::make_block(std::int32_t block_x, std::int32_t block_y,
                         const std::vector<ShadowTriangle>& casters, GroundBlock& block) const {
-  const Eigen::Vector3f& sun = light_.to_sun_F();
+  const Eigen::Vector3f& sun = light_.to_sun();
   const auto margin = [](bool towards_sun) { return towards_sun ? kSunMargin : kMargin; };
   Region region;
   region.block_row = margin(sun.x() < -0.02f);
@@ -173,8 +173,8 @@ void Ground::add_noise(Region& region) const {
   const auto unevenness = static_cast<float>(1.2 + 2.5 * parameters_.clod_cover);
   for (int row = 0; row < region.rows; ++row) {
     const int x = region.first_x + row + kTexelLift;
-    const float* fine = fine_tile_.data() + x % kFineTileSize * kFineTileSize;
-    const float* coarse = coarse_tile_.data() + x % kCoarseTileSize * kCoarseTileSize;
+    const float* fine = tile_row(fine_tile_, kFineTileSize, x);
+    const float* coarse = tile_row(coarse_tile_, kCoarseTileSize, x);
     int fine_column = (region.first_y + kTexelLift) % kFineTileSize;
     int coarse_column = (region.first_y + kTexelLift) % kCoarseTileSize;
     // Turned by a quarter: another layer of the same tile.
@@ -185,7 +185,7 @@ void Ground::add_noise(Region& region) const {
     for (int column = 0; column < region.columns; ++column) {
       const float f = fine[fine_column];
       const float c = coarse[coarse_column];
-      const float t = turned[(coarse_column * 7 / 8) * kCoarseTileSize];
+      const float t = turned[static_cast<std::ptrdiff_t>(coarse_column * 7 / 8) * kCoarseTileSize];
       relief[column] = roughness * f + unevenness * c;
       value[column] = 1.0f + 0.16f * f + 0.08f * c;
       tint[column] = t;
@@ -203,14 +203,14 @@ void Ground::add_noise(Region& region) const {
   std::vector<float> nodes(static_cast<std::size_t>(nodes_x) * nodes_y);
   for (int i = 0; i < nodes_x; ++i) {
     for (int j = 0; j < nodes_y; ++j) {
-      nodes[i * nodes_y + j] = static_cast<float>(
+      nodes[static_cast<std::size_t>(i) * nodes_y + j] = static_cast<float>(
           1e3 * base_height_m((gx + i) * kStep * texel_m_, (gy + j) * kStep * texel_m_));
     }
   }
   for (int row = 0; row < region.rows; ++row) {
     const int x = region.first_x + row - gx * kStep;
     const float tx = static_cast<float>(x % kStep) / kStep;
-    const float* a = nodes.data() + x / kStep * nodes_y;
+    const float* a = nodes.data() + static_cast<std::ptrdiff_t>(x / kStep) * nodes_y;
     const float* b = a + nodes_y;
     for (int column = 0; column < region.columns; ++column) {
       const int y = region.first_y + column - gy * kStep;
@@ -224,7 +224,7 @@ void Ground::add_noise(Region& region) const {
 }
 
 void Ground::cast_shadows(Region& region, const std::vector<ShadowTriangle>& casters) const {
-  const Eigen::Vector3f& sun = light_.to_sun_F();
+  const Eigen::Vector3f& sun = light_.to_sun();
   const auto mm = static_cast<float>(1e3 * texel_m_);
   const std::size_t count = region.relief_mm.size();
   region.sun.assign(count, 1.0f);
@@ -327,7 +327,7 @@ void Ground::shade(const Region& region, GroundBlock& block) const {
   for (int r = 0; r < GroundBlock::kSize; ++r) {
     const int row = r + region.block_row;
     const int x = row + region.first_x + kTexelLift;
-    const float* coarse = coarse_tile_.data() + (x / 3) % kCoarseTileSize * kCoarseTileSize;
+    const float* coarse = tile_row(coarse_tile_, kCoarseTileSize, x / 3);
     for (int c = 0; c < GroundBlock::kSize; ++c) {
       const int column = c + region.block_column;
       const std::size_t i = region.at(row, column);
@@ -335,7 +335,7 @@ void Ground::shade(const Region& region, GroundBlock& block) const {
       const float slope_x = (height(i + region.columns) - height(i - region.columns)) * inverse;
       const float slope_y = (height(i + 1) - height(i - 1)) * inverse;
       const float norm = 1.0f / std::sqrt(1.0f + slope_x * slope_x + slope_y * slope_y);
-      const Eigen::Vector3f& sun = light_.to_sun_F();
+      const Eigen::Vector3f& sun = light_.to_sun();
       const float facing = std::max((sun.z() - slope_x * sun.x() - slope_y * sun.y()) * norm, 0.0f);
 
       Eigen::Vector3f albedo;
@@ -366,7 +366,7 @@ void Ground::shade(const Region& region, GroundBlock& block) const {
       const Eigen::Vector3f bgr = light_.encode_bgr(albedo.cwiseProduct(total));
       GroundTexel& texel = block.texels[static_cast<std::size_t>(r) * GroundBlock::kSize + c];
       const float shade = 255.0f * std::sqrt(std::min(sky.y() / std::max(total.y(), 1e-6f), 1.0f));
-      const auto byte = [](float value) { return static_cast<std::uint32_t>(value + 0.5f); };
+      const auto byte = [](float value) { return static_cast<std::uint32_t>(std::lrint(value)); };
       texel.bgrs = byte(bgr.x()) | byte(bgr.y()) << 8 | byte(bgr.z()) << 16 | byte(shade) << 24;
       texel.height_64um = static_cast<std::int16_t>(
           std::clamp(height(i) * (1e-3f / GroundBlock::kHeightUnit_m), -32000.0f, 32000.0f));

@@ -55,8 +55,8 @@ void GroundAtlas::prepare(const Window& window, const Casters& casters, int thre
   std::vector<Job> jobs;
   for (std::int32_t x = first_x; x <= last_x; ++x) {
     for (std::int32_t y = first_y; y <= last_y; ++y) {
-      Slot& slot = slots_[static_cast<std::size_t>((x & (blocks_x_ - 1)) * blocks_y_ +
-                                                   (y & (blocks_y_ - 1)))];
+      Slot& slot =
+          slots_[static_cast<std::size_t>(x & (blocks_x_ - 1)) * blocks_y_ + (y & (blocks_y_ - 1))];
       if (slot.filled && slot.block_x == x && slot.block_y == y) continue;
       slot = {true, x, y};
       jobs.push_back({x, y, {}});
@@ -71,7 +71,7 @@ void GroundAtlas::prepare(const Window& window, const Casters& casters, int thre
       const std::int32_t column = job.block_y * kSize & column_mask_;
       for (int row = 0; row < kSize; ++row) {
         const std::int32_t x = (job.block_x * kSize + row) & row_mask_;
-        std::copy_n(block.texels.begin() + row * kSize, kSize,
+        std::copy_n(block.texels.begin() + static_cast<std::ptrdiff_t>(row) * kSize, kSize,
                     texels_.begin() + static_cast<std::ptrdiff_t>(x * stride_) + column);
       }
     }

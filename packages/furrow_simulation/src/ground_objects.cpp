@@ -107,9 +107,8 @@ void Ground::stamp_objects(Region& region) const {
           const auto noise_shift = static_cast<int>(shift);
           for (int row = first_row; row < end_row; ++row) {
             const float dx = static_cast<float>(row) - row0;
-            const float* noise =
-                fine_tile_.data() +
-                (row + region.first_x + noise_shift + kTexelLift) % kFineTileSize * kFineTileSize;
+            const float* noise = tile_row(fine_tile_, kFineTileSize,
+                                          row + region.first_x + noise_shift + kTexelLift);
             int noise_column = (first_column + region.first_y + kTexelLift) % kFineTileSize - 1;
             for (int column = first_column; column < end_column; ++column) {
               const float dy = static_cast<float>(column) - column0;
@@ -155,7 +154,8 @@ void Ground::stamp_objects(Region& region) const {
         const auto value = static_cast<float>(random.uniform(0.45, 1.1));
         const auto tint = static_cast<float>(random.uniform(-1.0, 1.0));
         const auto lift = static_cast<float>(random.uniform(1.0, 3.5));
-        for (double s = 0.0; s < length; s += 0.7 * mm) {
+        const int steps = static_cast<int>(std::ceil(length / (0.7 * mm)));
+        for (int step = 0; step < steps; ++step) {
           x += 0.7 * mm * std::cos(heading);
           y += 0.7 * mm * std::sin(heading);
           heading += 0.7 * mm * bend;

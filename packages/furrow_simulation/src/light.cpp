@@ -58,19 +58,18 @@ Light::Light(const LightParameters& p)
     if (!std::isfinite(value)) throw ConfigError("light: every value must be finite");
   }
   const double elevation = std::clamp(p.sun_elevation_rad, 0.2, 1.5708);
-  to_sun_F_ =
-      Eigen::Vector3d(std::cos(elevation) * std::cos(p.sun_azimuth_rad),
-                      std::cos(elevation) * std::sin(p.sun_azimuth_rad), std::sin(elevation))
-          .cast<float>();
+  to_sun_ = Eigen::Vector3d(std::cos(elevation) * std::cos(p.sun_azimuth_rad),
+                            std::cos(elevation) * std::sin(p.sun_azimuth_rad), std::sin(elevation))
+                .cast<float>();
   const auto exposure = static_cast<float>(p.exposure);
   const auto diffuse = static_cast<float>(std::clamp(p.diffuse_share, 0.0, 1.0));
   const auto warmth = static_cast<float>(p.warmth);
   const Eigen::Array3f balance(1.0f + 0.22f * warmth, 1.0f, 1.0f - 0.22f * warmth);
   // A low sun is yellower; the sky is bluer than the sun.
-  const float low = 1.0f - to_sun_F_.z();
+  const float low = 1.0f - to_sun_.z();
   const Eigen::Array3f sun(1.0f + 0.08f * low, 1.0f, 1.0f - 0.20f * low);
   const Eigen::Array3f sky(0.96f, 1.0f, 1.06f);
-  sun_rgb_ = exposure * (1.0f - diffuse) / std::max(to_sun_F_.z(), 0.35f) * (balance * sun);
+  sun_rgb_ = exposure * (1.0f - diffuse) / std::max(to_sun_.z(), 0.35f) * (balance * sun);
   sky_rgb_ = exposure * diffuse * (balance * sky);
 }
 

@@ -54,13 +54,14 @@ std::vector<float> noise_tile(int size, const std::vector<NoiseOctave>& octaves,
     }
     for (int y = 0; y < size; ++y) {
       const float ty = weight[y % wavelength];
-      const float* row = lattice.data() + y / wavelength * period;
-      const float* next = lattice.data() + (y / wavelength + 1) % period * period;
+      const float* row = tile_row(lattice, period, y / wavelength);
+      const float* next = tile_row(lattice, period, y / wavelength + 1);
       for (int cell = 0; cell < period; ++cell) {
         const int right = (cell + 1) % period;
         const float left_value = row[cell] + (next[cell] - row[cell]) * ty;
         const float right_value = row[right] + (next[right] - row[right]) * ty;
-        float* out = tile.data() + y * size + cell * wavelength;
+        float* out = tile.data() + static_cast<std::ptrdiff_t>(y) * size +
+                     static_cast<std::ptrdiff_t>(cell) * wavelength;
         for (int i = 0; i < wavelength; ++i) {
           out[i] += left_value + (right_value - left_value) * weight[i];
         }

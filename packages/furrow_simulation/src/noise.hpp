@@ -1,9 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace furrow::simulation {
+
+/// A row of a square tile; `row` is wrapped. @pre row >= 0.
+[[nodiscard]] inline const float* tile_row(const std::vector<float>& tile, int size, int row) {
+  return tile.data() + static_cast<std::ptrdiff_t>(row % size) * size;
+}
 
 /// A number in [-1, 1] for a lattice point.
 [[nodiscard]] float lattice_value(std::uint64_t seed, std::int32_t x, std::int32_t y);

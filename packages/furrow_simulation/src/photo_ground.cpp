@@ -6,6 +6,7 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
+#include "check.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_core/random.hpp"
 #include "parallel.hpp"
@@ -121,14 +122,9 @@ void PhotoGroundParameters::visit(ParameterVisitor& v) {
 
 PhotoGround::PhotoGround(const std::vector<GroundPhoto>& photos,
                          const PhotoGroundParameters& parameters, std::uint64_t seed)
-    : parameters_(parameters), effects_(parameters.camera, seed) {
+    : parameters_(checked(parameters)), effects_(parameters.camera, seed) {
   if (photos.empty()) throw ConfigError("photo ground: no photo");
   const double pixel_m = 1e-3 * parameters.photo_resolution_mm_per_px;
-  for (const double value : {pixel_m, parameters.length_m, parameters.width_m}) {
-    if (!(std::isfinite(value) && value > 0.0)) {
-      throw ConfigError("photo ground: resolution, length and width must be positive");
-    }
-  }
   const int turns = static_cast<int>(std::clamp<std::int64_t>(parameters.quarter_turns, 0, 3));
   std::vector<GroundPhoto> upright;
   std::vector<std::vector<MaskedPlant>> masks;
@@ -181,12 +177,13 @@ PhotoGround::PhotoGround(const std::vector<GroundPhoto>& photos,
       Eigen::Vector2d at = mask.stem;
       if (cell.half_turn) at = Eigen::Vector2d(size.width - 1.0, size.height - 1.0) - at;
       if (cell.mirror) at.x() = size.width - 1.0 - at.x();
+      const int row = i / columns_;
+      const int column = i % columns_;
       field::Plant plant;
       plant.kind = photo.plants[k].kind;
       plant.species = photo.plants[k].species;
-      plant.p_F_m = {
-          (i / columns_ + 1) * cell_length_m_ - (at.y() + 0.5) * pixel_m,
-          (i % columns_ + 1 - 0.5 * columns_) * cell_width_m_ - (at.x() + 0.5) * pixel_m};
+      plant.p_F_m = {(row + 1) * cell_length_m_ - (at.y() + 0.5) * pixel_m,
+                     (column + 1 - 0.5 * columns_) * cell_width_m_ - (at.x() + 0.5) * pixel_m};
       plant.radius_m = std::max(mask.radius, 0.5) * pixel_m;
       plant.area_mm2 = 1e6 * static_cast<double>(mask.pixels) * pixel_m * pixel_m;
       const bool inside = plant.p_F_m.x() >= 0.0 && plant.p_F_m.x() <= parameters.length_m &&
@@ -240,14 +237,14 @@ Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Is
       auto* bgr = frame.bgr.ptr<std::uint8_t>(v);
       auto* depth = frame.depth_m.ptr<float>(v);
       auto* index = frame.plant_index.ptr<std::int32_t>(v);
-      const Eigen::Vector3d row_ray = view.ray_F({0.0, static_cast<double>(v)});
-      const Eigen::Vector3d step = view.ray_step_F();
+      const Eigen::Vector3d row_ray = view.ray({0.0, static_cast<double>(v)});
+      const Eigen::Vector3d step = view.ray_step();
       for (int u = 0; u < intrinsics.width_px; ++u) {
         const Eigen::Vector3d ray = row_ray + u * step;
         if (!(ray.z() < -1e-6)) continue;
-        const double distance = -view.p_FC().z() / ray.z();
-        const double x = view.p_FC().x() + distance * ray.x();
-        const double y = view.p_FC().y() + distance * ray.y();
+        const double distance = -view.position().z() / ray.z();
+        const double x = view.position().x() + distance * ray.x();
+        const double y = view.position().y() + distance * ray.y();
         if (!(x >= 0.0 && x < parameters_.length_m && std::abs(y) < 0.5 * parameters_.width_m)) {
           continue;
         }
@@ -256,7 +253,7 @@ Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Is
         const double cells_y = (y + left_m) * per_width;
         const int row = std::min(static_cast<int>(cells_x), rows_ - 1);
         const int column = std::clamp(static_cast<int>(cells_y), 0, columns_ - 1);
-        const Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+        const Cell& cell = cells_[static_cast<std::size_t>(row) * columns_ + column];
         const cv::Mat& source = photos_[cell.photo].levels[static_cast<std::size_t>(level)];
         double from_left = (column + 1) - cells_y;
         double from_top = (row + 1) - cells_x;
@@ -303,8 +300,8 @@ Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Is
   }
   for (const auto& [index, pixels] : visible) {
     const field::Plant& plant = field_.plants[static_cast<std::size_t>(index)];
-    const auto stem =
-        camera.project(view.X_CF() * Eigen::Vector3d(plant.p_F_m.x(), plant.p_F_m.y(), 0.0));
+    const auto stem = camera.project(view.pose_inverse() *
+                                     Eigen::Vector3d(plant.p_F_m.x(), plant.p_F_m.y(), 0.0));
     if (!stem) continue;
     frame.plants.push_back({.plant_index = static_cast<std::size_t>(index),
                             .id = plant.id,

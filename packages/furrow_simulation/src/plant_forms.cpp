@@ -308,7 +308,7 @@ class FormBuilder {
       leaf.outline = Outline::kStrap;
       // Two ranks of leaves; tillers turn them.
       leaf.azimuth_rad = shape_.heading_rad + kPi * static_cast<float>(n % 2) +
-                         0.5f * static_cast<float>(n / 2) + noise(0.35f);
+                         0.25f * static_cast<float>(n - n % 2) + noise(0.35f);
       leaf.length = uniform(0.65f, 1.05f);
       leaf.width = 0.085f * shape_.blade_width * uniform(0.8f, 1.2f);
       leaf.pitch_rad = uniform(0.35f, 1.15f);

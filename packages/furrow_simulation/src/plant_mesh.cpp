@@ -103,8 +103,8 @@ double top_view_area_mm2(const PlantMesh& mesh) {
   for (const auto& t : mesh.triangles) {
     scan_triangle(place(t[0]), place(t[1]), place(t[2]), kGrid, 0, kGrid,
                   [&](int y, int first, int end) {
-                    std::fill(mask.begin() + y * kGrid + first, mask.begin() + y * kGrid + end,
-                              std::uint8_t{1});
+                    const auto row = mask.begin() + static_cast<std::ptrdiff_t>(y) * kGrid;
+                    std::fill(row + first, row + end, std::uint8_t{1});
                   });
   }
   const auto covered = static_cast<double>(std::count(mask.begin(), mask.end(), 1));

@@ -19,9 +19,9 @@ std::optional<PlacedPlant> place_plant(const View& view, const BuiltPlant& plant
   PlacedPlant placed;
   placed.plant_index = plant_index;
   placed.built = &plant;
-  const Eigen::Vector3d p_CP = view.X_CF() * plant.p_F.cast<double>();
+  const Eigen::Vector3d p_CP = view.pose_inverse() * plant.p_F.cast<double>();
   const Eigen::Vector3f origin = p_CP.cast<float>();
-  const Eigen::Matrix3f R_CF = view.X_CF().linear().cast<float>();
+  const Eigen::Matrix3f R_CF = view.pose_inverse().linear().cast<float>();
   const auto fx = static_cast<float>(camera.fx_px);
   const auto fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px);

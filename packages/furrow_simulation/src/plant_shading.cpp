@@ -29,7 +29,7 @@ class HeightGrid {
       const float z = (a.z() + b.z() + c.z()) / 3.0f;
       scan_triangle(cell(a), cell(b), cell(c), kSize, 0, kSize, [&](int y, int first, int end) {
         for (int x = first; x < end; ++x) {
-          float& top = height_[static_cast<std::size_t>(y * kSize + x)];
+          float& top = height_[static_cast<std::size_t>(y) * kSize + x];
           top = std::max(top, z);
         }
       });
@@ -70,7 +70,7 @@ class HeightGrid {
 }  // namespace
 
 std::vector<VertexLight> light_plant(const PlantMesh& mesh, const Light& light, double gloss) {
-  const Eigen::Vector3f& sun = light.to_sun_F();
+  const Eigen::Vector3f& sun = light.to_sun();
   const HeightGrid towards_sun(mesh, sun);
   const HeightGrid upwards(mesh, Eigen::Vector3f::UnitZ());
   const auto radius = static_cast<float>(mesh.radius_m);
@@ -121,9 +121,9 @@ LeafTexture::LeafTexture(std::uint64_t seed, double damage)
       const float mottle =
           value_noise(seed, i / 5.0, j / 5.0) + 0.6f * value_noise(seed + 1, i / 2.0, j / 2.0);
       const float spot = std::max(value_noise(seed + 2, i / 3.5, j / 3.5) - 0.45f, 0.0f);
-      factor_[static_cast<std::size_t>(i * kAcross + j)] =
-          std::clamp(0.97f + 0.22f * midrib + 0.10f * vein + 0.05f * mottle - 0.06f * (s > 0.9f) +
-                         (i % 3 == 0 ? -1.0f : 1.0f) * spots * spot,
+      factor_[static_cast<std::size_t>(i) * kAcross + j] =
+          std::clamp(0.97f + 0.22f * midrib + 0.10f * vein + 0.05f * mottle -
+                         (s > 0.9f ? 0.06f : 0.0f) + (i % 3 == 0 ? -1.0f : 1.0f) * spots * spot,
                      0.5f, 1.4f);
     }
   }

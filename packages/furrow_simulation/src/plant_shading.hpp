@@ -27,13 +27,13 @@ class LeafTexture {
   static constexpr int kAlong = 64;
   static constexpr int kAcross = 32;
 
-  explicit LeafTexture(std::uint64_t seed, double damage);
+  LeafTexture(std::uint64_t seed, double damage);
 
-  /// A factor for the colour. @pre none: coordinates outside are held at the border.
+  /// A factor for the colour. Coordinates outside are held at the border.
   [[nodiscard]] float sample(float along, float across) const {
     const int i = std::clamp(static_cast<int>(along * kAlong), 0, kAlong - 1);
     const int j = std::clamp(static_cast<int>((across + 1.0f) * (0.5f * kAcross)), 0, kAcross - 1);
-    return factor_[static_cast<std::size_t>(i * kAcross + j)];
+    return factor_[static_cast<std::size_t>(i) * kAcross + j];
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 
+#include "check.hpp"
 #include "ground_atlas.hpp"
 #include "parallel.hpp"
 #include "plant_cache.hpp"
@@ -32,16 +33,16 @@ std::uint64_t spread(const GroundTexel& texel) {
 // The part of the ground that the camera sees, within reach.
 GroundAtlas::Window visible_window(const View& view, double texel_m) {
   const double reach = kHalfWindow_blocks * GroundBlock::kSize * texel_m;
-  const Eigen::Vector2d nadir = view.p_FC().head<2>();
+  const Eigen::Vector2d nadir = view.position().head<2>();
   const auto hit = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = view.ray_F(pixel);
+    const Eigen::Vector3d ray = view.ray(pixel);
     const double steepness = std::max(-ray.z(), 1e-3 * ray.head<2>().norm() + 1e-9);
-    return nadir + ray.head<2>() * (view.p_FC().z() / steepness);
+    return nadir + ray.head<2>() * (view.position().z() / steepness);
   };
   const auto& camera = view.intrinsics();
   const double w = camera.width_px - 0.5;
   const double h = camera.height_px - 0.5;
-  const Eigen::Vector3d middle_ray = view.ray_F({0.5 * (w - 0.5), 0.5 * (h - 0.5)});
+  const Eigen::Vector3d middle_ray = view.ray({0.5 * (w - 0.5), 0.5 * (h - 0.5)});
   const Eigen::Vector2d centre = middle_ray.z() < -0.3 * middle_ray.head<2>().norm()
                                      ? hit({0.5 * (w - 0.5), 0.5 * (h - 0.5)})
                                      : nadir;
@@ -67,7 +68,7 @@ class Renderer::Implementation {
                  const field::SpeciesTable& species)
       : field_(std::move(field)),
         species_(species),
-        parameters_(parameters),
+        parameters_(checked(parameters)),
         light_(parameters.light),
         ground_(parameters.ground, light_, seed),
         atlas_(ground_),
@@ -199,16 +200,16 @@ class Renderer::Implementation {
 
   void intersect_row(const View& view, const GroundAtlas::Window& window, int v,
                      RowHits& hits) const {
-    const auto height = static_cast<float>(view.p_FC().z());
+    const auto height = static_cast<float>(view.position().z());
     const auto per_texel = static_cast<float>(1.0 / ground_.texel_m());
     const float unit = GroundBlock::kHeightUnit_m / height;
     // Relative to the window's corner single precision is enough.
     const auto start_x =
-        static_cast<float>(view.p_FC().x() / ground_.texel_m() - window.first_x - 0.5);
+        static_cast<float>(view.position().x() / ground_.texel_m() - window.first_x - 0.5);
     const auto start_y =
-        static_cast<float>(view.p_FC().y() / ground_.texel_m() - window.first_y - 0.5);
-    const Eigen::Vector3f ray = view.ray_F({0.0, static_cast<double>(v)}).cast<float>();
-    const Eigen::Vector3f step = view.ray_step_F().cast<float>();
+        static_cast<float>(view.position().y() / ground_.texel_m() - window.first_y - 0.5);
+    const Eigen::Vector3f ray = view.ray({0.0, static_cast<double>(v)}).cast<float>();
+    const Eigen::Vector3f step = view.ray_step().cast<float>();
     const float rx = ray.x();
     const float ry = ray.y();
     const float rz = ray.z();
@@ -251,7 +252,7 @@ class Renderer::Implementation {
     auto* bgr = frame.bgr.ptr<std::uint8_t>(v);
     auto* depth = frame.depth_m.ptr<float>(v);
     auto* index = frame.plant_index.ptr<std::int32_t>(v);
-    const float unit = GroundBlock::kHeightUnit_m / static_cast<float>(view.p_FC().z());
+    const float unit = GroundBlock::kHeightUnit_m / static_cast<float>(view.position().z());
     const std::int32_t limit_x = (window.last_x - window.first_x - 1) * 256;
     const std::int32_t limit_y = (window.last_y - window.first_y - 1) * 256;
     const std::int32_t first_x = window.first_x;
@@ -266,7 +267,7 @@ class Renderer::Implementation {
         depth[u] = 1.0f / depth[u];
         continue;
       }
-      std::uint8_t* out = bgr + 3 * u;
+      std::uint8_t* out = bgr + 3 * static_cast<std::ptrdiff_t>(u);
       std::int32_t x = hits.x[u];
       std::int32_t y = hits.y[u];
       if (x < 256 || y < 256 || x >= limit_x || y >= limit_y) {

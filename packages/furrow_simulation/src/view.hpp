@@ -15,17 +15,19 @@ class View {
       : intrinsics_(intrinsics), X_FC_(X_FC), X_CF_(X_FC.inverse()) {}
 
   [[nodiscard]] const geometry::CameraIntrinsics& intrinsics() const { return intrinsics_; }
-  [[nodiscard]] Eigen::Vector3d p_FC() const { return X_FC_.translation(); }
-  [[nodiscard]] const Eigen::Isometry3d& X_CF() const { return X_CF_; }
+  /// In F.
+  [[nodiscard]] Eigen::Vector3d position() const { return X_FC_.translation(); }
+  /// X_CF.
+  [[nodiscard]] const Eigen::Isometry3d& pose_inverse() const { return X_CF_; }
   /// The ray of a pixel in F, one unit long along the optical axis: scaled by the depth it leads
   /// to the point that the pixel sees.
-  [[nodiscard]] Eigen::Vector3d ray_F(const Eigen::Vector2d& pixel) const {
+  [[nodiscard]] Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const {
     return X_FC_.linear() * Eigen::Vector3d((pixel.x() - intrinsics_.cx_px) / intrinsics_.fx_px,
                                             (pixel.y() - intrinsics_.cy_px) / intrinsics_.fy_px,
                                             1.0);
   }
   /// From the ray of a pixel to that of the next one to the right.
-  [[nodiscard]] Eigen::Vector3d ray_step_F() const {
+  [[nodiscard]] Eigen::Vector3d ray_step() const {
     return X_FC_.linear().col(0) / intrinsics_.fx_px;
   }
 
@@ -42,7 +44,7 @@ class RobotShadow {
     const auto& camera = view.intrinsics();
     const double cosine = std::cos(light.robot_shadow_angle_rad);
     const double sine = std::sin(light.robot_shadow_angle_rad);
-    const double height = view.p_FC().z();
+    const double height = view.position().z();
     // Metres behind the edge, on level ground, linear in the pixel; softened over 2 cm.
     constexpr double kSoftness_m = 0.02;
     const double per_u = sine * height / camera.fx_px / kSoftness_m;

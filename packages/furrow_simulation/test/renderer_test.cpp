@@ -207,6 +207,9 @@ TEST(Renderer, RefusesWhatItCannotDraw) {
   p = clean();
   p.light.exposure = std::numeric_limits<double>::infinity();
   EXPECT_THROW(Renderer(field_of({}), p, 1), ConfigError);
+  p = clean();
+  p.light.robot_shadow_edge_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Renderer(field_of({}), p, 1), ConfigError);
 }
 
 TEST(Renderer, PlantsShadeTheGround) {

@@ -28,7 +28,8 @@ class Light {
   /// Throws ConfigError when a value is not finite.
   explicit Light(const LightParameters& parameters);
 
-  [[nodiscard]] const Eigen::Vector3f& to_sun_F() const { return to_sun_F_; }
+  /// A unit vector in F.
+  [[nodiscard]] const Eigen::Vector3f& to_sun() const { return to_sun_; }
   [[nodiscard]] const Eigen::Vector3f& sun_rgb() const { return sun_rgb_; }
   [[nodiscard]] const Eigen::Vector3f& sky_rgb() const { return sky_rgb_; }
 
@@ -44,7 +45,7 @@ class Light {
   }
 
  private:
-  Eigen::Vector3f to_sun_F_;
+  Eigen::Vector3f to_sun_;
   Eigen::Vector3f sun_rgb_;
   Eigen::Vector3f sky_rgb_;
   float contrast_;
