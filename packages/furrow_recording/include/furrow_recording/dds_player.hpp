@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <string>
 
 #include "furrow_core/time.hpp"
 #include "furrow_dds/dds_transport.hpp"

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_recording/recorder.hpp"

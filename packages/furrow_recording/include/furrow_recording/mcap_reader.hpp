@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "furrow_core/result.hpp"
 #include "furrow_recording/byte_stream.hpp"
@@ -68,6 +69,8 @@ class Reader {
   [[nodiscard]] const std::string& damage() const;
   /// Bytes at the end that belong to no whole record.
   [[nodiscard]] std::uint64_t bytes_ignored() const;
+  /// What was damaged and left out when the file was gone through; at most a hundred.
+  [[nodiscard]] const std::vector<std::string>& faults() const;
 
   /// The cursor must not outlive the reader.
   [[nodiscard]] MessageCursor messages(ReadOptions options = {}) const;

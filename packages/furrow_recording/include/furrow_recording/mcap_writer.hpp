@@ -59,8 +59,8 @@ class Writer {
   /// Bytes of messages that wait in memory.
   [[nodiscard]] std::size_t bytes_pending() const;
   [[nodiscard]] std::uint64_t lost_messages() const;
-  /// Of the messages handed over so far, those in memory included.
-  [[nodiscard]] const Statistics& statistics() const;
+  /// Of what was handed over and not lost, messages in memory included.
+  [[nodiscard]] Statistics statistics() const;
 
  private:
   class Impl;

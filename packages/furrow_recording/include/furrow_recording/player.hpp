@@ -27,7 +27,8 @@ struct PlayerOptions {
   std::optional<Duration> duration;          ///< of the recording, from the start offset
   bool loop = false;
   bool start_paused = false;
-  double clock_hz = 0.0;  ///< of /clock, per recorded second; 0: none
+  /// Of /clock, per recorded second; 0: none. Else a recorded /clock is left out.
+  double clock_hz = 0.0;
 };
 
 struct PlayedMessage {
@@ -57,7 +58,8 @@ using PlayerEvent = std::variant<PlayedMessage, PlayedClock, PlayerWait, PlayerE
 class Player {
  public:
   /// Files of one recording or several of one clock. kNotFound, kIo, kParse for files; also
-  /// kInvalidArgument for options that cannot be met: rate not above zero, offset outside.
+  /// kInvalidArgument for options that cannot be met: a rate below 0.001 or above 1000, an offset
+  /// outside.
   [[nodiscard]] static Result<Player> open(const std::vector<std::filesystem::path>& files,
                                            const PlayerOptions& options);
   [[nodiscard]] static Result<Player> open(std::vector<std::unique_ptr<mcap::Source>> files,
@@ -68,6 +70,8 @@ class Player {
 
   /// Names as played, after filter and remap. Like topics of several files are one.
   [[nodiscard]] const std::vector<TopicDescription>& topics() const;
+  /// As opened, with the rate as it is now.
+  [[nodiscard]] const PlayerOptions& options() const;
   /// Of all messages of all files. Equal when there are none.
   [[nodiscard]] Time begin() const;
   [[nodiscard]] Time end() const;
@@ -86,7 +90,7 @@ class Player {
   void step(std::uint64_t messages = 1);
   /// To this time of the recording, clamped to begin() and end() of what is to be played.
   void seek(Time now, Time to);
-  /// kInvalidArgument when not above zero.
+  /// kInvalidArgument when not between 0.001 and 1000.
   [[nodiscard]] Status set_rate(Time now, double rate);
   /// The recording's time at `now`.
   [[nodiscard]] Time position(Time now) const;

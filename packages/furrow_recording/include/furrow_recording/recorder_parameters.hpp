@@ -12,6 +12,7 @@ struct RecorderParameters {
   std::vector<std::string> include = {"*"};
   std::vector<std::string> exclude;
   std::string compression = "zstd";
+  std::string schema = "ros2msg";
   std::int64_t chunk_kb = 1024;
   double flush_s = 1.0;
   double split_mb = 0.0;
@@ -28,6 +29,10 @@ struct RecorderParameters {
     v.visit({.name = "exclude", .description = "topics to leave out, before all others"}, exclude);
     v.visit({.name = "compression", .description = "of chunks", .choices = {"none", "lz4", "zstd"}},
             compression);
+    v.visit({.name = "schema",
+             .description = "in which language types are described in the file",
+             .choices = {"ros2msg", "omgidl"}},
+            schema);
     v.visit({.name = "chunk_kb",
              .unit = "kB",
              .description = "messages that are packed, checked and written as one",

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +34,18 @@ struct TopicDescription {
 [[nodiscard]] std::string topic_in_file(std::string_view name);
 [[nodiscard]] std::string topic_from_file(std::string_view name);
 
-/// The description of a topic of this type, with its IDL text when Furrow was built with it.
+enum class SchemaStyle : std::uint8_t {
+  kRos2msg,  ///< what ROS 2's own tools and viewers read
+  kOmgidl,   ///< the IDL text as it is
+};
+
+/// The description of a topic of this type, with the type's text when Furrow was built with it.
 [[nodiscard]] TopicDescription describe_topic(std::string_view name, std::string_view type_name,
-                                              const std::vector<msgs::Qos>& offered_qos);
+                                              const std::vector<msgs::Qos>& offered_qos,
+                                              SchemaStyle style);
+/// How the type is named in a file's schema: "pkg/msg/Type" beside ros2msg, "pkg::msg::Type" beside
+/// omgidl, since readers look it up in the IDL by that name.
+[[nodiscard]] std::string schema_name(const TopicDescription& topic);
 
 /// As rosbag2 writes `offered_qos_profiles`: a YAML list with the numbers of rmw's enumerations.
 [[nodiscard]] std::string qos_to_yaml(const std::vector<msgs::Qos>& profiles);
