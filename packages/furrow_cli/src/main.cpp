@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   furrow::cli::add_run_command(app, exit_code);
   furrow::cli::add_graph_command(app, exit_code);
   furrow::cli::add_params_command(app, exit_code);
+  furrow::cli::add_dataset_command(app, exit_code);
   furrow::cli::add_field_command(app, exit_code);
   furrow::cli::add_topic_command(app, exit_code);
   constexpr int kBadUsage = 2;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_core/result.hpp"
+#include "furrow_field/species.hpp"
+
+namespace furrow::components {
+
+/// How a rendered data set is drawn. Every image has a field, a light, a soil and a camera pose of
+/// its own, within these ranges.
+struct RenderedDatasetParameters {
+  std::int64_t images = 100;
+  std::int64_t width_px = 640;
+  std::int64_t height_px = 480;
+  double resolution_mm_per_px = 1.15;  ///< on the ground, before the scale varies
+  double scale_variation = 0.2;        ///< camera height, 1 +-
+  double tilt_max_rad = 0.03;
+  double yaw_max_rad = 0.08;
+  double weeds_per_m2_min = 3.0;
+  double weeds_per_m2_max = 80.0;
+  double crop_share = 0.85;  ///< images with a crop row
+  double validation_share = 0.15;
+  double evaluation_share = 0.15;
+  bool depth = false;  ///< also write depth images
+  std::int64_t threads = 2;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// Renders a data set of the structure of SB21 (Ahmadi et al. 2024): images/, annotations as COCO
+/// with stems and robot pose, split into train.json, validation.json and evaluation.json. The
+/// pictures and their order depend only on parameters, species and seed. `progress` is called with
+/// the number of images done. Fails with kIo, or with what the field generator refuses.
+[[nodiscard]] Status render_dataset(const RenderedDatasetParameters& parameters,
+                                    const field::SpeciesTable& species, std::uint64_t seed,
+                                    const std::filesystem::path& folder,
+                                    const std::function<void(std::int64_t)>& progress);
+
+}  // namespace furrow::components

@@ -1,0 +1,255 @@
+#include "furrow_components/rendered_dataset.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <vector>
+
+#include "furrow_core/random.hpp"
+#include "furrow_field/generator.hpp"
+#include "furrow_geometry/camera.hpp"
+#include "furrow_simulation/renderer.hpp"
+#include "furrow_vision/dataset_coco.hpp"
+
+namespace furrow::components {
+namespace {
+
+struct Shot {
+  geometry::PinholeCamera camera;
+  geometry::Pose2 X_FB;
+  Eigen::Isometry3d X_FC;
+};
+
+geometry::CameraIntrinsics intrinsics(const RenderedDatasetParameters& p) {
+  // The camera of the tool: 1 m above the ground.
+  const double focal_px = 1000.0 / p.resolution_mm_per_px;
+  return {static_cast<int>(p.width_px),
+          static_cast<int>(p.height_px),
+          focal_px,
+          focal_px,
+          0.5 * static_cast<double>(p.width_px - 1),
+          0.5 * static_cast<double>(p.height_px - 1)};
+}
+
+Shot draw_shot(const RenderedDatasetParameters& p, double length_m, Random& random) {
+  const double height_m = 1.0 + random.uniform(-p.scale_variation, p.scale_variation);
+  Shot shot{geometry::PinholeCamera(intrinsics(p)), {}, Eigen::Isometry3d::Identity()};
+  shot.X_FB = {0.5 * length_m + random.uniform(-0.1, 0.1), random.uniform(-0.3, 0.3),
+               random.uniform(-p.yaw_max_rad, p.yaw_max_rad)};
+  // Optical axis down, image up along the travel.
+  Eigen::Matrix3d R_BC;
+  R_BC << 0, -1, 0, -1, 0, 0, 0, 0, -1;
+  shot.X_FC = geometry::to_isometry(shot.X_FB);
+  shot.X_FC.translation().z() = height_m;
+  shot.X_FC.linear() =
+      shot.X_FC.linear() *
+      Eigen::AngleAxisd(random.uniform(-p.tilt_max_rad, p.tilt_max_rad), Eigen::Vector3d::UnitX()) *
+      Eigen::AngleAxisd(random.uniform(-p.tilt_max_rad, p.tilt_max_rad), Eigen::Vector3d::UnitY()) *
+      R_BC;
+  return shot;
+}
+
+field::FieldParameters draw_field(const RenderedDatasetParameters& p, Random& random) {
+  field::FieldParameters field;
+  field.length_m = 2.4;
+  field.width_m = 2.4;
+  // Densities spread evenly over the orders of magnitude.
+  field.weeds_per_m2 = std::exp(random.uniform(
+      std::log(p.weeds_per_m2_min), std::log(std::max(p.weeds_per_m2_max, p.weeds_per_m2_min))));
+  field.pattern = random.bernoulli(0.3) ? "clusters" : "poisson";
+  field.crop = random.bernoulli(p.crop_share);
+  field.row_spacing_m = random.uniform(0.45, 0.55);
+  field.row_offset_m = random.uniform(-0.25, 0.25);
+  field.plant_spacing_m = random.uniform(0.15, 0.25);
+  field.row_sd_m = random.uniform(0.004, 0.02);
+  field.missing_probability = random.uniform(0.0, 0.25);
+  field.crop_leaves_min = random.integer(2, 6);
+  field.crop_leaves_max = std::min<std::int64_t>(8, field.crop_leaves_min + random.integer(0, 3));
+  field.weed_leaves_min = 2;
+  field.weed_leaves_max = random.integer(2, 8);
+  field.size_sd = random.uniform(0.1, 0.25);
+  field.weed_to_crop_min_m = 0.01;
+  return field;
+}
+
+std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& frame,
+                                                    const field::FieldModel& field) {
+  std::vector<cv::Rect> boxes(frame.plants.size());
+  std::vector<int> order(field.plants.size(), -1);
+  for (std::size_t i = 0; i < frame.plants.size(); ++i) {
+    order[frame.plants[i].plant_index] = static_cast<int>(i);
+  }
+  struct Extent {
+    int left = INT32_MAX, top = INT32_MAX, right = -1, bottom = -1;
+  };
+  std::vector<Extent> extents(frame.plants.size());
+  for (int v = 0; v < frame.plant_index.rows; ++v) {
+    const auto* row = frame.plant_index.ptr<std::int32_t>(v);
+    for (int u = 0; u < frame.plant_index.cols; ++u) {
+      if (row[u] < 0) continue;
+      Extent& extent = extents[static_cast<std::size_t>(order[static_cast<std::size_t>(row[u])])];
+      extent = {std::min(extent.left, u), std::min(extent.top, v), std::max(extent.right, u),
+                std::max(extent.bottom, v)};
+    }
+  }
+  constexpr std::int64_t kLeastVisible_px = 12;
+  std::vector<vision::AnnotatedInstance> instances;
+  for (std::size_t i = 0; i < frame.plants.size(); ++i) {
+    const simulation::VisiblePlant& visible = frame.plants[i];
+    const Extent& e = extents[i];
+    if (visible.visible_px < kLeastVisible_px || e.right < 0) continue;
+    const field::Plant& plant = field.plants[visible.plant_index];
+    vision::AnnotatedInstance instance;
+    instance.kind = plant.kind == field::PlantKind::kCrop ? vision::SubClassKind::kCrop
+                                                          : vision::SubClassKind::kWeed;
+    instance.category = plant.species;
+    instance.box_px = {e.left, e.top, e.right - e.left + 1, e.bottom - e.top + 1};
+    instance.mask = frame.plant_index(instance.box_px) == static_cast<int>(visible.plant_index);
+    instance.stem_px = visible.stem_px;
+    instances.push_back(std::move(instance));
+  }
+  return instances;
+}
+
+Status write_image(const std::filesystem::path& path, const cv::Mat& image) {
+  bool written = false;
+  try {
+    written = cv::imwrite(path.string(), image);
+  } catch (const cv::Exception&) {
+    written = false;
+  }
+  if (!written) return Error{ErrorCode::kIo, path.string() + ": cannot write the image"};
+  return {};
+}
+
+Result<vision::AnnotatedImage> render_one(const RenderedDatasetParameters& p,
+                                          const field::SpeciesTable& species, std::uint64_t seed,
+                                          std::int64_t index, const std::filesystem::path& folder) {
+  Random random(seed, "dataset", static_cast<std::uint64_t>(index));
+  const std::uint64_t image_seed = random.next();
+  auto field = field::generate_field(draw_field(p, random), species, image_seed);
+  if (!field.ok()) return field.error();
+  const Shot shot = draw_shot(p, field->length_m, random);
+  // The generator centres the field on y = 0 already; x runs from 0.
+  auto appearance = simulation::random_appearance(image_seed);
+  appearance.threads = p.threads;
+  simulation::Renderer renderer(std::move(field).value(), appearance, image_seed);
+  const simulation::Frame frame = renderer.render(shot.camera, shot.X_FC, 0);
+
+  char name[32];
+  std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(index));
+  vision::AnnotatedImage image;
+  image.path = folder / "images" / (std::string(name) + ".png");
+  image.width_px = frame.bgr.cols;
+  image.height_px = frame.bgr.rows;
+  image.instances = instances_of(frame, renderer.field());
+  image.X_FB = shot.X_FB;
+  image.velocity_mps = 0.0;
+  if (const Status written = write_image(image.path, frame.bgr); !written.ok()) {
+    return written.error();
+  }
+  if (p.depth) {
+    cv::Mat depth;
+    frame.depth_m.convertTo(depth, CV_16U, 1e4);
+    image.depth_path = folder / "depth" / (std::string(name) + ".png");
+    if (const Status written = write_image(image.depth_path, depth); !written.ok()) {
+      return written.error();
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+void RenderedDatasetParameters::visit(ParameterVisitor& v) {
+  v.visit({.name = "images", .description = "in all three parts", .min = 1, .max = 100000}, images);
+  v.visit({.name = "width_px", .unit = "px", .description = "of an image", .min = 64, .max = 4096},
+          width_px);
+  v.visit({.name = "height_px", .unit = "px", .description = "of an image", .min = 64, .max = 4096},
+          height_px);
+  v.visit({.name = "resolution_mm_per_px",
+           .unit = "mm/px",
+           .description = "on the ground",
+           .min = 0.1,
+           .max = 10.0},
+          resolution_mm_per_px);
+  v.visit({.name = "scale_variation",
+           .description = "of the camera's height, 1 +-",
+           .min = 0.0,
+           .max = 0.5},
+          scale_variation);
+  v.visit(
+      {.name = "tilt_max_rad", .unit = "rad", .description = "of the camera", .min = 0, .max = 0.3},
+      tilt_max_rad);
+  v.visit({.name = "yaw_max_rad",
+           .unit = "rad",
+           .description = "between camera and row",
+           .min = 0.0,
+           .max = 3.2},
+          yaw_max_rad);
+  v.visit({.name = "weeds_per_m2_min",
+           .unit = "1/m2",
+           .description = "least density",
+           .min = 0.01,
+           .max = 1000},
+          weeds_per_m2_min);
+  v.visit({.name = "weeds_per_m2_max",
+           .unit = "1/m2",
+           .description = "greatest density",
+           .min = 0.01,
+           .max = 1000},
+          weeds_per_m2_max);
+  v.visit({.name = "crop_share", .description = "images with crop rows", .min = 0, .max = 1},
+          crop_share);
+  v.visit({.name = "validation_share", .description = "of the images", .min = 0, .max = 0.5},
+          validation_share);
+  v.visit({.name = "evaluation_share", .description = "of the images", .min = 0, .max = 0.5},
+          evaluation_share);
+  v.visit({.name = "depth", .description = "write depth images too"}, depth);
+  v.visit({.name = "threads", .description = "of the renderer", .min = 1, .max = 256}, threads);
+}
+
+Status render_dataset(const RenderedDatasetParameters& parameters,
+                      const field::SpeciesTable& species, std::uint64_t seed,
+                      const std::filesystem::path& folder,
+                      const std::function<void(std::int64_t)>& progress) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder / "images", failure);
+  if (parameters.depth && !failure) std::filesystem::create_directories(folder / "depth", failure);
+  if (failure) {
+    return Error{ErrorCode::kIo,
+                 folder.string() + ": cannot make the folder: " + failure.message()};
+  }
+  vision::Dataset whole;
+  whole.name = "rendered";
+  for (const field::Species& entry : species.all()) {
+    whole.classes.push_back({entry.name, entry.kind == field::PlantKind::kCrop
+                                             ? vision::SubClassKind::kCrop
+                                             : vision::SubClassKind::kWeed});
+  }
+  std::array<vision::Dataset, 3> parts = {whole, whole, whole};
+  const double images = static_cast<double>(parameters.images);
+  const auto validation = static_cast<std::int64_t>(images * parameters.validation_share);
+  const auto evaluation = static_cast<std::int64_t>(images * parameters.evaluation_share);
+  for (std::int64_t i = 0; i < parameters.images; ++i) {
+    auto image = render_one(parameters, species, seed, i, folder);
+    if (!image.ok()) return image.error();
+    const std::size_t part = i < evaluation ? 2 : i < evaluation + validation ? 1 : 0;
+    parts[part].images.push_back(std::move(image).value());
+    progress(i + 1);
+  }
+  constexpr std::array kNames = {"train.json", "validation.json", "evaluation.json"};
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (const Status written = vision::write_coco(folder / kNames[part], parts[part]);
+        !written.ok()) {
+      return written;
+    }
+  }
+  return {};
+}
+
+}  // namespace furrow::components
