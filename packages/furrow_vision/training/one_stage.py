@@ -1,0 +1,86 @@
+"""The one-stage network: plant, stem, offset to the stem, and class, at a quarter of the image."""
+
+import torch
+from torch import nn
+from torch.nn import functional as F
+
+
+def _conv(inputs, outputs, kernel, stride=1, groups=1):
+    return nn.Sequential(
+        nn.Conv2d(inputs, outputs, kernel, stride, kernel // 2, groups=groups, bias=False),
+        nn.BatchNorm2d(outputs), nn.ReLU(inplace=True))
+
+
+class _Residual(nn.Module):
+    """An inverted residual block (Sandler et al. 2018)."""
+
+    def __init__(self, inputs, outputs, stride, expand=3):
+        super().__init__()
+        inner = inputs * expand
+        self.body = nn.Sequential(_conv(inputs, inner, 1), _conv(inner, inner, 3, stride, inner),
+                                  nn.Conv2d(inner, outputs, 1, bias=False), nn.BatchNorm2d(outputs))
+        self.skip = stride == 1 and inputs == outputs
+
+    def forward(self, x):
+        return x + self.body(x) if self.skip else self.body(x)
+
+
+def _stage(inputs, outputs, blocks):
+    return nn.Sequential(_Residual(inputs, outputs, 2),
+                         *[_Residual(outputs, outputs, 1) for _ in range(blocks - 1)])
+
+
+class OneStage(nn.Module):
+    """Input: BGR in [0, 1]. Output channels: plant, stem, du, dv, then one per class (logits)."""
+
+    def __init__(self, classes, width=1.0):
+        super().__init__()
+        c = [int(round(n * width / 8) * 8) for n in (24, 32, 56, 88, 128, 64)]
+        self.stem = _conv(3, c[0], 3, 2)
+        self.down4 = _stage(c[0], c[1], 2)
+        self.down8 = _stage(c[1], c[2], 3)
+        self.down16 = _stage(c[2], c[3], 4)
+        self.down32 = _stage(c[3], c[4], 3)
+        self.lateral = nn.ModuleList([nn.Conv2d(n, c[5], 1) for n in c[1:5]])
+        self.smooth = nn.ModuleList([nn.Sequential(_conv(c[5], c[5], 3, groups=c[5]), _conv(c[5], c[5], 1))
+                                     for _ in range(3)])
+        self.head = nn.Sequential(_conv(c[5], c[5], 3), nn.Conv2d(c[5], 4 + classes, 1))
+        # Rare positives: start from low probabilities, or the first steps drown in background.
+        with torch.no_grad():
+            self.head[-1].bias.zero_()
+            self.head[-1].bias[:2] = torch.tensor([-2.0, -4.0])
+
+    def forward(self, x):
+        features, maps = self.stem(x), []
+        for down in (self.down4, self.down8, self.down16, self.down32):
+            features = down(features)
+            maps.append(features)
+        top = self.lateral[3](maps[3])
+        for level in (2, 1, 0):
+            up = F.interpolate(top, scale_factor=2, mode="nearest")
+            top = self.smooth[level](up + self.lateral[level](maps[level]))
+        return self.head(top)
+
+
+def loss(output, share, classes, heat, offsets, class_weights):
+    """Sum of: cross entropy with Dice for plant, penalty-reduced focal loss for stems (Zhou et al.
+    2019), L1 for offsets, weighted cross entropy for classes on plant cells."""
+    plant, stem, offset, logits = output[:, 0], output[:, 1], output[:, 2:4], output[:, 4:]
+    probability = torch.sigmoid(plant)
+    overlap = 2 * (probability * share).sum() + 1
+    dice = 1 - overlap / (probability.sum() + share.sum() + 1)
+    plant_loss = F.binary_cross_entropy_with_logits(plant, share) + 0.5 * dice
+
+    p = torch.sigmoid(stem).clamp(1e-4, 1 - 1e-4)
+    peak = (heat >= 0.999).float()
+    positive = -((1 - p) ** 2) * torch.log(p) * peak
+    negative = -((1 - heat) ** 4) * p ** 2 * torch.log(1 - p) * (1 - peak)
+    stem_loss = (positive.sum() + negative.sum()) / peak.sum().clamp(min=1)
+
+    inside = classes >= 0
+    count = inside.sum().clamp(min=1)
+    offset_loss = (F.l1_loss(offset, offsets, reduction="none").sum(1) * inside).sum() / count
+    class_loss = (F.cross_entropy(logits, classes.clamp(min=0), class_weights, reduction="none")
+                  * inside).sum() / count
+    parts = {"plant": plant_loss, "stem": stem_loss, "offset": offset_loss, "class": class_loss}
+    return plant_loss + 0.5 * stem_loss + offset_loss + class_loss, parts
