@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "furrow_core/parameters.hpp"
 #include "furrow_core/result.hpp"
 #include "furrow_field/field_model.hpp"
 #include "furrow_planning/types.hpp"
@@ -36,8 +37,8 @@ struct RowParameters {
 /// A field as planners see it.
 struct FieldTargets {
   double length_m = 0.0;
-  std::vector<planning::Target> weeds;  ///< by x; ids 0, 1, ...; weight 1
-  std::vector<bool> high_priority;      ///< of each weed
+  std::vector<planning::Target> weeds;          ///< by x; ids 0, 1, ...; weight 1
+  std::vector<bool> high_priority;              ///< of each weed
   std::vector<planning::ProtectedPlant> crops;  ///< by x
 };
 

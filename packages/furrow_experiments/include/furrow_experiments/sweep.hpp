@@ -17,11 +17,8 @@ struct SweepPoint {
 
 /// Rolling view of one field case over each parameter in turn, every planner asked for. Errors and
 /// exceptions: as drive_all.
-[[nodiscard]] Result<std::vector<SweepPoint>> run_sweeps(const FieldCase& field,
-                                                         const std::vector<PlannerChoice>& planners,
-                                                         const Variant& base,
-                                                         const SamplingParameters& sampling,
-                                                         std::size_t threads,
-                                                         const Progress& progress = {});
+[[nodiscard]] Result<std::vector<SweepPoint>> run_sweeps(
+    const FieldCase& field, const std::vector<PlannerChoice>& planners, const Variant& base,
+    const SamplingParameters& sampling, std::size_t threads, const Progress& progress = {});
 
 }  // namespace furrow::experiments
