@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "crc32_clmul.hpp"
+
 namespace furrow::mcap {
 namespace {
 
@@ -50,10 +52,8 @@ std::uint32_t multiply(std::uint32_t a, std::uint32_t b) {
   return product;
 }
 
-}  // namespace
-
-std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
-  std::uint32_t crc = ~before;
+/// The register behind `bytes`, from the one before.
+std::uint32_t by_tables(std::span<const std::byte> bytes, std::uint32_t crc) {
   const std::byte* at = bytes.data();
   std::size_t left = bytes.size();
   const auto four = [](std::uint32_t word, std::size_t slice) {
@@ -67,7 +67,20 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
   for (; left > 0; --left, ++at) {
     crc = (crc >> 8U) ^ kTables[0][(crc ^ std::to_integer<std::uint32_t>(*at)) & 0xFFU];
   }
-  return ~crc;
+  return crc;
+}
+
+}  // namespace
+
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
+  static const bool can_fold = has_clmul();
+  std::uint32_t crc = ~before;
+  if (can_fold && bytes.size() >= kFoldStepBytes) {
+    const std::size_t whole = bytes.size() / kFoldStepBytes * kFoldStepBytes;
+    crc = by_tables(fold_crc32(bytes.first(whole), crc), 0);
+    bytes = bytes.subspan(whole);
+  }
+  return ~by_tables(bytes, crc);
 }
 
 std::uint32_t crc32_combine(std::uint32_t a, std::uint32_t b, std::uint64_t b_bytes) {

@@ -27,7 +27,7 @@ TEST(Crc32, GivesTheStandardsCheckValue) {
 
 TEST(Crc32, EqualsItsDefinitionAtEveryLengthAndInParts) {
   Random random(1, "crc");
-  Bytes bytes(200);
+  Bytes bytes(400);
   for (auto& byte : bytes) {
     byte = static_cast<std::byte>(random.next());
   }

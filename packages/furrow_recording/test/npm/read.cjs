@@ -10,7 +10,7 @@ const { MessageReader: IdlReader } = require("@foxglove/omgidl-serialization");
 const { parse: parseRosmsg } = require("@foxglove/rosmsg");
 const { MessageReader: RosReader } = require("@foxglove/rosmsg2-serialization");
 const zstd = require("@foxglove/wasm-zstd");
-const lz4 = require("@foxglove/wasm-lz4").default;
+const lz4 = require("@foxglove/wasm-lz4");
 
 function decoder(schema) {
   const text = new TextDecoder().decode(schema.data);

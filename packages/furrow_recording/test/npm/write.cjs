@@ -29,6 +29,15 @@ async function main() {
         : undefined,
   });
   await writer.start({ profile: "ros2", library: "" });
+  // Before the messages: behind loose ones @mcap/core 2.2.2 writes wrong indexes of these.
+  await writer.addMetadata({ name: "origin", metadata: new Map([["writer", "@mcap/core"]]) });
+  await writer.addAttachment({
+    name: "note",
+    mediaType: "text/plain",
+    logTime: 1n,
+    createTime: 2n,
+    data: new TextEncoder().encode("attached"),
+  });
   const definition = "string data\n";
   const schemaId = await writer.registerSchema({
     name: "std_msgs/msg/String",
@@ -52,14 +61,6 @@ async function main() {
       data: encoder.writeMessage({ data: `text ${i}` }),
     });
   }
-  await writer.addMetadata({ name: "origin", metadata: new Map([["writer", "@mcap/core"]]) });
-  await writer.addAttachment({
-    name: "note",
-    mediaType: "text/plain",
-    logTime: 1n,
-    createTime: 2n,
-    data: new TextEncoder().encode("attached"),
-  });
   await writer.end();
   fs.closeSync(file);
 }
