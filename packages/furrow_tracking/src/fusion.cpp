@@ -22,13 +22,12 @@ double log_odds(const std::array<double, kPlantClasses>& probability, double flo
   return std::log(crop / (1.0 - crop));
 }
 
-void set_class(Track& track, double odds, double bound) {
-  const double crop = 1.0 / (1.0 + std::exp(-std::clamp(odds, -bound, bound)));
-  track.class_probability = {crop, 1.0 - crop};
-}
-
-double collected_log_odds(const Track& track) {
-  return std::log(track.class_probability[0] / track.class_probability[1]);
+void add_class_evidence(Track& track, const Observation& seen,
+                        const TrackerParameters& parameters) {
+  const double weight =
+      parameters.class_evidence_weight * (seen.truncated ? parameters.class_truncated_weight : 1.0);
+  track.class_log_odds += weight * log_odds(seen.class_probability, parameters.class_floor);
+  set_class(track, 0.0, parameters.class_max_log_odds);
 }
 
 void apply_floor(Eigen::Matrix2d& covariance, double floor_m) {
@@ -58,6 +57,12 @@ void add_votes(std::vector<float>& votes, const std::vector<float>& more) {
 }
 
 }  // namespace
+
+void set_class(Track& track, double prior_log_odds, double bound) {
+  track.class_log_odds = std::clamp(track.class_log_odds, -bound, bound);
+  const double crop = 1.0 / (1.0 + std::exp(-(track.class_log_odds + prior_log_odds)));
+  track.class_probability = {crop, 1.0 - crop};
+}
 
 bool is_valid(const Observation& o) {
   const Eigen::Matrix2d& c = o.covariance_F_m2;
@@ -92,10 +97,7 @@ Track begin_track(const PreparedObservation& observation, Time stamp,
   apply_floor(track.covariance_F_m2, parameters.position_floor_m);
   fuse_size(track, seen, parameters.size_memory_views);
   track.score = seen.score;
-  set_class(
-      track,
-      parameters.class_evidence_weight * log_odds(seen.class_probability, parameters.class_floor),
-      parameters.class_max_log_odds);
+  add_class_evidence(track, seen, parameters);
   track.species_votes = seen.species_probability;
   track.views = 1;
   track.first_seen = stamp;
@@ -119,11 +121,7 @@ void fuse(Track& track, const PreparedObservation& observation, Time stamp,
   track.recent_displacement_m += 0.5 * (innovation.norm() - track.recent_displacement_m);
 
   fuse_size(track, seen, parameters.size_memory_views);
-  set_class(
-      track,
-      collected_log_odds(track) + parameters.class_evidence_weight *
-                                      log_odds(seen.class_probability, parameters.class_floor),
-      parameters.class_max_log_odds);
+  add_class_evidence(track, seen, parameters);
   add_votes(track.species_votes, seen.species_probability);
   ++track.views;
   track.score += (seen.score - track.score) / track.views;
@@ -140,8 +138,8 @@ void absorb(Track& kept, const Track& other, const TrackerParameters& parameters
                          gain * other.covariance_F_m2 * gain.transpose();
   apply_floor(kept.covariance_F_m2, parameters.position_floor_m);
 
-  set_class(kept, collected_log_odds(kept) + collected_log_odds(other),
-            parameters.class_max_log_odds);
+  kept.class_log_odds += other.class_log_odds;
+  set_class(kept, 0.0, parameters.class_max_log_odds);
   add_votes(kept.species_votes, other.species_votes);
   const double share = static_cast<double>(other.views) / (kept.views + other.views);
   kept.score += share * (other.score - kept.score);

@@ -18,6 +18,9 @@ namespace furrow::tracking {
 /// radius and area by a running mean.
 void fuse(Track& track, const PreparedObservation& observation, Time stamp,
           const TrackerParameters& parameters);
+/// Sets the probability of class from the views' evidence, which is brought within the bound, and
+/// what else is known.
+void set_class(Track& track, double prior_log_odds, double bound);
 /// Joins what two tracks know of the same plant; `kept` keeps its id and state.
 void absorb(Track& kept, const Track& other, const TrackerParameters& parameters);
 

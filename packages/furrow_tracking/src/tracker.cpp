@@ -37,7 +37,9 @@ void check(TrackerParameters& parameters) {
 class Tracker::Impl {
  public:
   explicit Impl(TrackerParameters parameters)
-      : parameters_((check(parameters), std::move(parameters))), association_(parameters_) {}
+      : parameters_((check(parameters), std::move(parameters))),
+        association_(parameters_),
+        row_prior_(parameters_.rows) {}
 
   UpdateSummary update(const View& view, std::span<const Observation> observations);
   void finish();
@@ -58,6 +60,7 @@ class Tracker::Impl {
   [[nodiscard]] std::int32_t seen_twin_of(const Track& track, Time now) const;
   void end_passed(const View& view, UpdateSummary& summary);
   void evict_farthest(const View& view, UpdateSummary& summary);
+  void apply_row_prior();
   void take_out_ended();
   static void end(Track& track, EndReason reason) {
     track.state = TrackState::kEnded;
@@ -65,6 +68,7 @@ class Tracker::Impl {
   }
 
   Association association_;
+  RowPrior row_prior_;
   std::uint64_t next_id_ = 1;
   bool started_ = false;
   Time newest_;
@@ -149,6 +153,7 @@ UpdateSummary Tracker::Impl::update(const View& view, std::span<const Observatio
   merge_duplicates(view, summary);
   end_passed(view, summary);
   evict_farthest(view, summary);
+  apply_row_prior();
   for (std::size_t o = 0; o < prepared_.size(); ++o) {
     if (track_of_[o] == kNoTrack) continue;
     const Track& track = tracks_[track_of_[o]];
@@ -321,6 +326,14 @@ void Tracker::Impl::evict_farthest(const View& view, UpdateSummary& summary) {
   for (std::size_t i = bound; i < by_distance_.size(); ++i) {
     end(tracks_[by_distance_[i].second], EndReason::kEvicted);
     ++summary.evicted;
+  }
+}
+
+void Tracker::Impl::apply_row_prior() {
+  if (!parameters_.rows.row_prior) return;
+  row_prior_.learn(tracks_);
+  for (Track& track : tracks_) {
+    set_class(track, row_prior_.log_odds(track.p_F_m.y()), parameters_.class_max_log_odds);
   }
 }
 

@@ -133,6 +133,11 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1.0},
           class_evidence_weight);
+  v.visit({.name = "class_truncated_weight",
+           .description = "share of that for a plant cut by the image's border",
+           .min = 0.0,
+           .max = 1.0},
+          class_truncated_weight);
   v.visit({.name = "class_max_log_odds",
            .description = "bound of the collected evidence of class",
            .min = 0.1,
@@ -143,6 +148,7 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 1.0,
            .max = 1000.0},
           size_memory_views);
+  rows.visit(v);
 }
 
 }  // namespace furrow::tracking

@@ -42,8 +42,9 @@ struct Track {
   double radius_m = 0.0;
   double area_mm2 = 0.0;
   double score = 0.0;  ///< mean over its views
-  /// P(class | all views), by PlantClass.
+  /// P(class | all views, and the place across the rows where that is asked for), by PlantClass.
   std::array<double, kPlantClasses> class_probability = {0.5, 0.5};
+  double class_log_odds = 0.0;  ///< of crop to weed, by the views alone
   /// Sum of the views' species probabilities; empty while no view named a species.
   std::vector<float> species_votes = {};
   std::int32_t views = 0;         ///< matches, the first view included

@@ -7,6 +7,7 @@
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_tracking/observation.hpp"
+#include "furrow_tracking/row_prior.hpp"
 #include "furrow_tracking/track.hpp"
 
 namespace furrow::tracking {
@@ -38,8 +39,10 @@ struct TrackerParameters {
   double outlier_sigma = 3.0;
   double class_floor = 0.1;
   double class_evidence_weight = 1.0;
+  double class_truncated_weight = 1.0;
   double class_max_log_odds = 8.0;
   double size_memory_views = 10.0;
+  RowPriorParameters rows;
 
   void visit(ParameterVisitor& v);
 };
