@@ -22,35 +22,13 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 namespace {
 
-constexpr std::uint32_t kServerPort = 11811;
 // Processes of one host that static peers are asked for; each has a port of its own.
 constexpr std::uint32_t kMaxProcessesPerHost = 32;
 // 64 kB fragments, and those of several images may wait in a port's queue.
 constexpr std::uint32_t kShmPortQueue = 1024;
-constexpr std::size_t kMaxServers = 256;
 
 bool has(const std::vector<std::string>& list, const char* entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
-}
-
-rtps::Locator_t udp_locator(const std::string& address, std::uint32_t default_port) {
-  const std::size_t colon = address.find(':');
-  const std::string host = address.substr(0, colon);
-  std::uint32_t port = default_port;
-  if (colon != std::string::npos) {
-    const char* first = address.data() + colon + 1;
-    const char* last = address.data() + address.size();
-    const auto [end, failure] = std::from_chars(first, last, port);
-    if (failure != std::errc() || end != last || port == 0 || port > 65535) {
-      throw ConfigError("peers: '" + address + "' has no port from 1 to 65535 behind its colon");
-    }
-  }
-  if (!rtps::IPLocator::isIPv4(host)) {
-    throw ConfigError("peers: '" + address + "' is not an IPv4 address");
-  }
-  rtps::Locator_t locator;
-  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, host, port, locator);
-  return locator;
 }
 
 void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos& qos) {
@@ -120,7 +98,7 @@ void set_discovery(const DdsParameters& parameters, fdds::DomainParticipantQos& 
   if (parameters.discovery != "discovery_server") {
     throw ConfigError("discovery: '" + parameters.discovery + "' is unknown");
   }
-  if (parameters.peers.size() > kMaxServers) {
+  if (parameters.peers.size() > kMaxDiscoveryServers) {
     throw ConfigError("peers: more than 256 discovery servers");
   }
   // Also what this process does not read itself, for recorders and tools.
@@ -128,14 +106,41 @@ void set_discovery(const DdsParameters& parameters, fdds::DomainParticipantQos& 
   builtin.discovery_config.discoveryServer_client_syncperiod = to_dds(Duration::milliseconds(100));
   for (std::size_t id = 0; id < parameters.peers.size(); ++id) {
     RemoteServerAttributes server;
-    server.ReadguidPrefix(eprosima::fastdds::rtps::DEFAULT_ROS2_SERVER_GUIDPREFIX);
-    server.guidPrefix.value[2] = static_cast<std::uint8_t>(id);
-    server.metatrafficUnicastLocatorList.push_back(udp_locator(parameters.peers[id], kServerPort));
+    server.guidPrefix = discovery_server_prefix(static_cast<std::uint8_t>(id));
+    server.metatrafficUnicastLocatorList.push_back(
+        udp_locator(parameters.peers[id], kDiscoveryServerPort));
     builtin.discovery_config.m_DiscoveryServers.push_back(server);
   }
 }
 
 }  // namespace
+
+rtps::Locator_t udp_locator(const std::string& address, std::uint32_t default_port) {
+  const std::size_t colon = address.find(':');
+  const std::string host = address.substr(0, colon);
+  std::uint32_t port = default_port;
+  if (colon != std::string::npos) {
+    const char* first = address.data() + colon + 1;
+    const char* last = address.data() + address.size();
+    const auto [end, failure] = std::from_chars(first, last, port);
+    if (failure != std::errc() || end != last || port == 0 || port > 65535) {
+      throw ConfigError("address '" + address + "' has no port from 1 to 65535 behind its colon");
+    }
+  }
+  if (!rtps::IPLocator::isIPv4(host)) {
+    throw ConfigError("address '" + address + "' is not an IPv4 address");
+  }
+  rtps::Locator_t locator;
+  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, host, port, locator);
+  return locator;
+}
+
+rtps::GuidPrefix_t discovery_server_prefix(std::uint8_t id) {
+  RemoteServerAttributes server;
+  server.ReadguidPrefix(eprosima::fastdds::rtps::DEFAULT_ROS2_SERVER_GUIDPREFIX);
+  server.guidPrefix.value[2] = id;
+  return server.guidPrefix;
+}
 
 fdds::DomainParticipantQos participant_qos(const DdsParameters& parameters) {
   DdsParameters copy = parameters;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "furrow_dds/discovery_server.hpp"
 #include "test_support.hpp"
 
 namespace furrow::dds {
@@ -95,6 +96,32 @@ TEST(Discovery, StaticPeersOfOneHostNeedNotListEachOther) {
   parameters.process_name = "b";
   DdsTransport b(parameters);
   EXPECT_TRUE(eventually([&] { return find_process(a.discovery(), "b") != nullptr; }));
+}
+
+TEST(Discovery, ADiscoveryServerBringsProcessesTogether) {
+  auto parameters = test_parameters("a");
+  const std::string address = "127.0.0.1:" + std::to_string(20000 + getpid() % 10000);
+  parameters.discovery = "discovery_server";
+  parameters.peers = {address};
+  const DiscoveryServer server(parameters.domain_id, address);
+  DdsTransport a(parameters);
+  parameters.process_name = "b";
+  DdsTransport b(parameters);
+  parameters.process_name = "watcher";
+  DdsTransport watcher(parameters);
+  StringInbox inbox;
+  const auto reader = b.make_reader("text", string_type(), msgs::latched_qos(), inbox.handler());
+  const auto writer = a.make_writer("text", string_type(), msgs::latched_qos());
+  writer->write(make_string("by the server"));
+  EXPECT_TRUE(inbox.wait_for(1));
+  // Also who has no endpoint of a topic knows of it.
+  EXPECT_TRUE(eventually([&] { return find_topic(watcher.discovery(), "text") != nullptr; }));
+}
+
+TEST(Discovery, ADiscoveryServerRefusesBadAddresses) {
+  EXPECT_THROW(DiscoveryServer(233, "127.0.0.1"), ConfigError);
+  EXPECT_THROW(DiscoveryServer(0, "localhost"), ConfigError);
+  EXPECT_THROW(DiscoveryServer(0, "127.0.0.1", 256), ConfigError);
 }
 
 TEST(Discovery, DomainsAreApart) {

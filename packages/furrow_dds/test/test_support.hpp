@@ -99,6 +99,13 @@ inline const msgs::MessageType& image_type() {
   return msgs::message_type<Image>();
 }
 
+inline constexpr Duration kWatchedLease = Duration::milliseconds(200);
+inline msgs::Qos watched_qos() {
+  msgs::Qos qos = msgs::event_qos();
+  qos.liveliness_lease = kWatchedLease;
+  return qos;
+}
+
 /// An image of `bytes` whose content follows from `seed`.
 inline std::shared_ptr<const Image> make_image(std::size_t bytes, std::uint32_t seed) {
   auto image = std::make_shared<Image>();

@@ -1,0 +1,22 @@
+// dds_test_peer DOMAIN: writes "alive" a hundred times a second for as long as it runs.
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "test_support.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    return 2;
+  }
+  // Shared memory would stay behind when the process is killed.
+  furrow::dds::DdsParameters parameters = furrow::dds::test_parameters("peer", {"udp"});
+  parameters.domain_id = std::strtol(argv[1], nullptr, 10);
+  furrow::dds::DdsTransport transport(parameters);
+  const auto writer =
+      transport.make_writer("alive", furrow::dds::string_type(), furrow::dds::watched_qos());
+  while (true) {
+    writer->write(furrow::dds::make_string("alive"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}

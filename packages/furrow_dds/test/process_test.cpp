@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "test_support.hpp"
+
+extern char** environ;
+
+namespace furrow::dds {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Runs the peer program; kills it at the end.
+class PeerProcess {
+ public:
+  PeerProcess() {
+    std::string program = FURROW_DDS_TEST_PEER;
+    std::string domain = std::to_string(test_domain());
+    char* arguments[] = {program.data(), domain.data(), nullptr};
+    started_ = posix_spawn(&pid_, program.c_str(), nullptr, nullptr, arguments, environ) == 0;
+  }
+  ~PeerProcess() { end(); }
+  PeerProcess(const PeerProcess&) = delete;
+  PeerProcess& operator=(const PeerProcess&) = delete;
+  [[nodiscard]] bool started() const { return started_; }
+  void signal(int number) const { kill(pid_, number); }
+  void end() {
+    if (started_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+      started_ = false;
+    }
+  }
+
+ private:
+  pid_t pid_ = 0;
+  bool started_ = false;
+};
+
+class Watched : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    transport_.on_fault([this](const WireFault& fault) { faults_.put(fault.kind); });
+    reader_ = transport_.make_reader("alive", string_type(), watched_qos(), inbox_.handler());
+    peer_.emplace();
+    ASSERT_TRUE(peer_->started());
+    ASSERT_TRUE(inbox_.wait_for(3));
+  }
+  void TearDown() override { transport_.on_fault({}); }
+  [[nodiscard]] bool reported(WireFaultKind kind) {
+    return eventually([&] {
+      const auto kinds = faults_.items();
+      return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+    });
+  }
+
+  DdsTransport transport_{test_parameters("watcher")};
+  Inbox<WireFaultKind> faults_;
+  StringInbox inbox_;
+  std::unique_ptr<graph::WireReader> reader_;
+  std::optional<PeerProcess> peer_;
+};
+
+TEST_F(Watched, AKilledProcessIsMissedWithinItsLease) {
+  const auto killed = Clock::now();
+  peer_->end();
+  ASSERT_TRUE(reported(WireFaultKind::kLivelinessLost));
+  // The lease, and as much again for a busy machine.
+  EXPECT_LT(Clock::now() - killed, 2 * std::chrono::nanoseconds(kWatchedLease.count_ns()));
+  EXPECT_EQ(transport_.status().front().liveliness_losses, 1U);
+}
+
+TEST_F(Watched, AStoppedProcessIsMissedAndFoundAgain) {
+  peer_->signal(SIGSTOP);
+  ASSERT_TRUE(reported(WireFaultKind::kLivelinessLost));
+  peer_->signal(SIGCONT);
+  EXPECT_TRUE(reported(WireFaultKind::kLivelinessRegained));
+  const std::size_t before = inbox_.size();
+  EXPECT_TRUE(inbox_.wait_for(before + 3));
+}
+
+}  // namespace
+}  // namespace furrow::dds
