@@ -36,6 +36,21 @@ std::map<std::string, std::string> read_remaps(const YamlSource& source, const Y
   return remaps;
 }
 
+bool read_thread(const YamlSource& source, const YAML::Node& value, const std::string& name) {
+  const std::string text = source.text(value, "thread");
+  if (text == "dedicated" || text == "pool") return text == "dedicated";
+  throw ConfigError(source.where(value), name + ".thread", "is neither dedicated nor pool");
+}
+
+int read_priority(const YamlSource& source, const YAML::Node& value, const std::string& name) {
+  const ParameterValue number = parse_parameter_value(source.text(value, "priority"));
+  constexpr std::int64_t kHighest = 99;
+  if (const auto* priority = std::get_if<std::int64_t>(&number)) {
+    if (*priority >= 0 && *priority <= kHighest) return static_cast<int>(*priority);
+  }
+  throw ConfigError(source.where(value), name + ".priority", "is not a number from 0 to 99");
+}
+
 ComponentSpec read_component(const YamlSource& source, const std::string& name,
                              const YAML::Node& name_node, const YAML::Node& map) {
   ComponentSpec spec;
@@ -57,18 +72,25 @@ ComponentSpec read_component(const YamlSource& source, const std::string& name,
           spec.remaps = read_remaps(source, value);
         } else if (key == "for_each") {
           spec.for_each = source.text(value, key);
+        } else if (key == "thread") {
+          spec.dedicated_thread = read_thread(source, value, name);
+        } else if (key == "priority") {
+          spec.priority = read_priority(source, value, name);
         } else if (key == "parameter") {
           spec.for_each_parameter = source.text(value, key);
         } else {
           throw ConfigError(
               source.where(node), name + "." + key,
               "unknown key; known: class, library, parameters_file, parameters, remap, "
-              "for_each, parameter");
+              "for_each, parameter, thread, priority");
         }
       });
   if (spec.class_name.empty()) throw ConfigError(spec.where, name + ".class", "is missing");
   if (spec.for_each.empty() != spec.for_each_parameter.empty()) {
     throw ConfigError(spec.where, name, "for_each and parameter go together");
+  }
+  if (spec.priority > 0 && !spec.dedicated_thread) {
+    throw ConfigError(spec.where, name + ".priority", "needs thread: dedicated");
   }
   for (GivenParameter& parameter : over) put_over(spec.parameters, std::move(parameter));
   return spec;

@@ -74,6 +74,11 @@ std::size_t Node::run_messages() {
 }
 
 void Node::run_timer(std::size_t timer, Time due) {
+  const Duration late = host_.now() - due;
+  {
+    const std::lock_guard lock(mutex_);
+    lateness_.add(late);
+  }
   call([&] { timers_[timer].callback(due); });
 }
 
@@ -104,7 +109,22 @@ ComponentStatus Node::status() const {
   status.missed_timers = missed_timers_;
   status.busy_s = busy_s_;
   status.longest_call_s = longest_call_s_;
+  status.timers = lateness_.count();
+  status.timer_late_p50 = lateness_.quantile(0.5);
+  status.timer_late_p99 = lateness_.quantile(0.99);
+  status.timer_late_max = lateness_.max();
+  status.thread = memory_.empty() ? thread_ : thread_ + "; memory " + memory_;
   return status;
+}
+
+void Node::set_thread(std::string text) {
+  const std::lock_guard lock(mutex_);
+  thread_ = std::move(text);
+}
+
+void Node::set_memory(std::string text) {
+  const std::lock_guard lock(mutex_);
+  memory_ = std::move(text);
 }
 
 void Node::every(Duration period, std::function<void(Time)> callback) {

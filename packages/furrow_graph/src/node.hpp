@@ -13,6 +13,7 @@
 #include "furrow_graph/context.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
+#include "lateness.hpp"
 
 namespace furrow::graph {
 
@@ -71,6 +72,9 @@ class Node final : public Context {
   [[nodiscard]] std::vector<Timer>& timers() { return timers_; }
   void run_timer(std::size_t timer, Time due);
   void count_missed_timer() { ++missed_timers_; }
+  /// What thread calls the node, and whether its memory stays in place: for the status.
+  void set_thread(std::string text);
+  void set_memory(std::string text);
 
   [[nodiscard]] ComponentStatus status() const;
 
@@ -125,6 +129,9 @@ class Node final : public Context {
   std::uint64_t callbacks_ = 0;
   double busy_s_ = 0.0;
   double longest_call_s_ = 0.0;
+  LatenessHistogram lateness_;
+  std::string thread_ = "pool";
+  std::string memory_;
   std::atomic<std::uint64_t> missed_timers_ = 0;
 };
 

@@ -1,33 +1,25 @@
-#include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <queue>
 #include <thread>
 #include <unordered_map>
 
+#include "dedicated_thread.hpp"
 #include "executor.hpp"
+#include "realtime_clock.hpp"
+#include "thread_scheduling.hpp"
 
 namespace furrow::graph {
 namespace {
 
-using Steady = std::chrono::steady_clock;
-
 /// Calls nodes from a pool of threads as their mail and timers come; a node is on one thread at a
-/// time. Time is Unix time at the start plus what the monotonic clock counted since.
+/// time. Nodes that ask for it have a thread of their own.
 class RealtimeExecutor final : public Executor {
  public:
-  explicit RealtimeExecutor(int threads)
-      : threads_(threads),
-        unix_start_(Time::from_nanoseconds(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                               std::chrono::system_clock::now().time_since_epoch())
-                                               .count())),
-        steady_start_(Steady::now()) {}
+  explicit RealtimeExecutor(int threads) : threads_(threads) {}
 
-  [[nodiscard]] Time now() const override {
-    const auto since = Steady::now() - steady_start_;
-    return unix_start_ + Duration::nanoseconds(
-                             std::chrono::duration_cast<std::chrono::nanoseconds>(since).count());
-  }
+  [[nodiscard]] Time now() const override { return clock_.now(); }
 
   void publish(Node& /*from*/, Route& route, MessagePtr message) override {
     if (!running_) {
@@ -42,6 +34,7 @@ class RealtimeExecutor final : public Executor {
     const std::lock_guard lock(mutex_);
     wake_workers_.notify_all();
     wake_timers_.notify_all();
+    for (auto& [node, thread] : dedicated_) thread->wake();
   }
 
   void deliver_from_wire(const Route::Reader& reader, MessagePtr message) override {
@@ -50,26 +43,19 @@ class RealtimeExecutor final : public Executor {
   }
 
   RunResult run(std::span<const std::unique_ptr<Node>> nodes) override {
-    for (const auto& node : nodes) strands_.emplace(node.get(), Strand{});
-    const Time start = now();
-    for (const auto& node : nodes) {
-      auto& timers = node->timers();
-      for (std::size_t i = 0; i < timers.size(); ++i) {
-        timers[i].next = start + timers[i].period;
-        timer_queue_.push({timers[i].next, node.get(), i});
-      }
-      strands_.at(node.get()).timer_pending.assign(timers.size(), false);
-    }
+    prepare(nodes);
     running_ = true;
     for (auto& [route, message] : constructed_) deliver(*route, message);
     constructed_.clear();
     for (const auto& node : nodes) {
       if (node->has_messages()) schedule(*node);
     }
+    for (auto& [node, thread] : dedicated_) thread->start();
     std::vector<std::thread> workers;
     for (int i = 0; i < threads_; ++i) workers.emplace_back([this] { work(); });
     watch_timers();
     for (std::thread& worker : workers) worker.join();
+    for (auto& [node, thread] : dedicated_) thread->join();
     running_ = false;
     return stop_.result(now());
   }
@@ -89,6 +75,32 @@ class RealtimeExecutor final : public Executor {
     bool operator>(const TimerEntry& other) const { return due > other.due; }
   };
 
+  void prepare(std::span<const std::unique_ptr<Node>> nodes) {
+    const Time start = now();
+    bool any_priority = false;
+    const std::lock_guard lock(mutex_);
+    for (const auto& node : nodes) {
+      for (Node::Timer& timer : node->timers()) timer.next = start + timer.period;
+      if (node->spec().dedicated_thread) {
+        dedicated_.emplace(node.get(), std::make_unique<DedicatedThread>(*node, clock_, stop_));
+        any_priority |= node->spec().priority > 0;
+        continue;
+      }
+      Strand& strand = strands_[node.get()];
+      strand.timer_pending.assign(node->timers().size(), false);
+      for (std::size_t i = 0; i < node->timers().size(); ++i) {
+        timer_queue_.push({node->timers()[i].next, node.get(), i});
+      }
+    }
+    if (!any_priority) return;
+    const std::string refused = lock_memory();
+    for (const auto& [node, thread] : dedicated_) {
+      if (node->spec().priority > 0) {
+        node->set_memory(refused.empty() ? "locked" : "not locked: " + refused);
+      }
+    }
+  }
+
   void deliver(Route& route, const MessagePtr& message) {
     for (const Route::Reader& reader : route.readers) {
       reader.node->push(reader.input, message);
@@ -98,6 +110,10 @@ class RealtimeExecutor final : public Executor {
   }
 
   void schedule(Node& node) {
+    if (const auto own = dedicated_.find(&node); own != dedicated_.end()) {
+      own->second->wake();
+      return;
+    }
     const std::lock_guard lock(mutex_);
     enqueue(node);
   }
@@ -144,8 +160,7 @@ class RealtimeExecutor final : public Executor {
         return;
       }
       TimerEntry entry = timer_queue_.top();
-      const auto due =
-          steady_start_ + std::chrono::nanoseconds((entry.due - unix_start_).count_ns());
+      const auto due = clock_.steady(entry.due);
       if (wake_timers_.wait_until(lock, due, [this] { return stop_.requested(); })) return;
       timer_queue_.pop();
       Strand& strand = strands_.at(entry.node);
@@ -162,11 +177,11 @@ class RealtimeExecutor final : public Executor {
   }
 
   const int threads_;
-  const Time unix_start_;
-  const Steady::time_point steady_start_;
+  const RealtimeClock clock_;
   StopRequest stop_;
   std::atomic<bool> running_ = false;
   std::vector<std::pair<Route*, MessagePtr>> constructed_;
+  std::unordered_map<Node*, std::unique_ptr<DedicatedThread>> dedicated_;  // fixed while running
 
   std::mutex mutex_;  // of what follows
   std::condition_variable wake_workers_;

@@ -46,13 +46,38 @@ TEST_F(GraphFile, Loads) {
   EXPECT_EQ(graph.components[2].remaps.at("tracker/tracks"), "truth/tracks");
 }
 
+TEST_F(GraphFile, ReadsWhichThreadCallsAComponent) {
+  const GraphSpec graph = load(
+      "components:\n"
+      "  a: {class: b}\n"
+      "  c: {class: b, thread: dedicated}\n"
+      "  d: {class: b, thread: dedicated, priority: 60}\n"
+      "  e: {class: b, thread: pool}\n");
+  ASSERT_EQ(graph.components.size(), 4u);
+  EXPECT_FALSE(graph.components[0].dedicated_thread);
+  EXPECT_TRUE(graph.components[1].dedicated_thread);
+  EXPECT_EQ(graph.components[1].priority, 0);
+  EXPECT_EQ(graph.components[2].priority, 60);
+  EXPECT_FALSE(graph.components[3].dedicated_thread);
+
+  EXPECT_EQ(error("components:\n  a: {class: b, thread: own}\n"),
+            "g.yaml:2: a.thread: is neither dedicated nor pool");
+  EXPECT_EQ(error("components:\n  a: {class: b, priority: 60}\n"),
+            "g.yaml:2: a.priority: needs thread: dedicated");
+  for (const std::string priority : {"100", "-1", "high", "1.5"}) {
+    EXPECT_EQ(
+        error("components:\n  a: {class: b, thread: dedicated, priority: " + priority + "}\n"),
+        "g.yaml:2: a.priority: is not a number from 0 to 99");
+  }
+}
+
 TEST_F(GraphFile, ErrorsSayFileLineAndKey) {
   EXPECT_EQ(error("graph: g\n"), "g.yaml:1: components: is missing or empty");
   EXPECT_EQ(error("graph: g\ncomponent: {}\n"),
             "g.yaml:2: component: unknown key; known: graph, common, external, components");
   EXPECT_EQ(error("components:\n  a: {clas: b}\n"),
             "g.yaml:2: a.clas: unknown key; known: class, library, parameters_file, parameters, "
-            "remap, for_each, parameter");
+            "remap, for_each, parameter, thread, priority");
   EXPECT_EQ(error("components:\n  a: {remap: {}}\n"), "g.yaml:2: a.class: is missing");
   EXPECT_EQ(error("components:\n  A: {class: b}\n"),
             "g.yaml:2: A: is not a component's name (lower-case letters, digits and _; not "

@@ -20,6 +20,8 @@ struct ComponentSpec {
   std::string for_each_parameter;  ///< takes the list's entry
   std::vector<GivenParameter> parameters;
   std::map<std::string, std::string> remaps;  ///< port -> topic
+  bool dedicated_thread = false;              ///< in real time
+  int priority = 0;  ///< of the dedicated thread under SCHED_FIFO, 1 to 99; 0: as any other thread
   SourceLocation where;
 };
 
@@ -36,6 +38,8 @@ struct ComponentSpec {
 ///       remap: {perception/instances: truth/instances}
 ///     axis:
 ///       class: axis_driver
+///       thread: dedicated       # in real time: a thread of its own, not one of the pool
+///       priority: 60            # SCHED_FIFO and locked memory, where permitted
 ///       for_each: axes          # one component "axis_NAME" for each NAME of the list
 ///       parameter: axis         # which parameter takes NAME
 struct GraphSpec {

@@ -43,6 +43,11 @@ struct ComponentStatus {
   std::uint64_t missed_timers = 0;
   double busy_s = 0.0;  ///< wall-clock time inside callbacks
   double longest_call_s = 0.0;
+  std::uint64_t timers = 0;  ///< timer callbacks that were called
+  Duration timer_late_p50;   ///< how late they were called; 0 in lock-step
+  Duration timer_late_p99;
+  Duration timer_late_max;
+  std::string thread;  ///< "pool", or "dedicated" with what was granted or refused
 };
 
 struct RunResult {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "furrow_core/time.hpp"
+
+namespace furrow::graph {
+
+/// How late calls came, in steps of 10 us up to 20 ms. Adding allocates nothing.
+class LatenessHistogram {
+ public:
+  void add(Duration late);
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  /// The p-quantile, rounded up to the step; the greatest value where it lies beyond the steps.
+  [[nodiscard]] Duration quantile(double p) const;
+  [[nodiscard]] Duration max() const { return max_; }
+
+ private:
+  static constexpr std::int64_t kStep_ns = 10'000;
+  std::array<std::uint32_t, 2000> steps_{};
+  std::uint64_t count_ = 0;
+  Duration max_;
+};
+
+}  // namespace furrow::graph

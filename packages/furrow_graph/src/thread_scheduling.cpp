@@ -1,0 +1,43 @@
+#include "thread_scheduling.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace furrow::graph {
+namespace {
+
+bool may_lock_without_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
+  constexpr int kIpcLock = 14;  // CAP_IPC_LOCK
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != "CapEff:") continue;
+    unsigned long long capabilities = 0;
+    status >> std::hex >> capabilities;
+    return (capabilities >> kIpcLock & 1) != 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string use_fifo_scheduling(int priority) {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  return error == 0 ? "" : std::strerror(error);
+}
+
+std::string lock_memory() {
+  if (!may_lock_without_limit()) return "the limit of locked memory is too low";
+  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? "" : std::strerror(errno);
+}
+
+}  // namespace furrow::graph
