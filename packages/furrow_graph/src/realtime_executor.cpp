@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -76,14 +77,13 @@ class RealtimeExecutor final : public Executor {
   };
 
   void prepare(std::span<const std::unique_ptr<Node>> nodes) {
+    lock_memory_for(nodes);  // takes its time: before the timers start
     const Time start = now();
-    bool any_priority = false;
     const std::lock_guard lock(mutex_);
     for (const auto& node : nodes) {
       for (Node::Timer& timer : node->timers()) timer.next = start + timer.period;
       if (node->spec().dedicated_thread) {
         dedicated_.emplace(node.get(), std::make_unique<DedicatedThread>(*node, clock_, stop_));
-        any_priority |= node->spec().priority > 0;
         continue;
       }
       Strand& strand = strands_[node.get()];
@@ -92,12 +92,14 @@ class RealtimeExecutor final : public Executor {
         timer_queue_.push({node->timers()[i].next, node.get(), i});
       }
     }
-    if (!any_priority) return;
+  }
+
+  static void lock_memory_for(std::span<const std::unique_ptr<Node>> nodes) {
+    const auto wants = [](const auto& node) { return node->spec().priority > 0; };
+    if (std::ranges::none_of(nodes, wants)) return;
     const std::string refused = lock_memory();
-    for (const auto& [node, thread] : dedicated_) {
-      if (node->spec().priority > 0) {
-        node->set_memory(refused.empty() ? "locked" : "not locked: " + refused);
-      }
+    for (const auto& node : nodes) {
+      if (wants(node)) node->set_memory(refused.empty() ? "locked" : "not locked: " + refused);
     }
   }
 
