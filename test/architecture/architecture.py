@@ -75,6 +75,7 @@ CMAKE_NAMES = {
     "libfastrtps-dev": "fastrtps",
     "liblemon-dev": "LEMON",
     "liblz4-dev": "liblz4",
+    "libgpiod-dev": "libgpiod",
     "libmodbus-dev": "libmodbus",
     "libopencv-dev": "OpenCV",
     "liburdfdom-dev": "urdfdom",

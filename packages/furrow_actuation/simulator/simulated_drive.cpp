@@ -191,7 +191,9 @@ void SimulatedDrive::move_towards(double target, double speed, double accelerati
 
 void SimulatedDrive::advance(double seconds) {
   constexpr double kStep = 1e-4;
-  const auto steps = static_cast<int>(std::lround(seconds / kStep));
+  unsimulated_s_ += seconds;
+  const auto steps = static_cast<int>(std::floor(unsimulated_s_ / kStep + 1e-6));
+  unsimulated_s_ = std::max(0.0, unsimulated_s_ - steps * kStep);
   for (int step = 0; step < steps; ++step) {
     switch (phase_) {
       case Phase::kStarting:

@@ -67,6 +67,7 @@ class SimulatedDrive {
   double velocity_ = 0.0;
   double demand_ = 12345.0;
   double target_ = 12345.0;
+  double unsimulated_s_ = 0.0;  ///< less than a step
 };
 
 }  // namespace furrow::actuation::drive_simulator

@@ -50,6 +50,7 @@ struct ModbusAxisDriver::Connection {
 void ModbusAxisParameters::visit(ParameterVisitor& v) {
   v.visit({.name = "address", .description = "IP address of the drive"}, address);
   v.visit({.name = "port", .description = "its Modbus TCP port", .min = 1, .max = 65535}, port);
+  v.visit({.name = "unit", .description = "its unit identifier", .min = 0, .max = 255}, unit);
   v.visit({.name = "timeout_s",
            .unit = "s",
            .description = "an exchange that takes longer is a lost connection",
@@ -164,7 +165,9 @@ Result<std::int32_t> ModbusAxisDriver::exchange(const Telegram& request, const O
   if (!connection_) return unavailable("no connection to the drive");
   modbus_t* context = connection_->context;
   std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> answer{};
-  if (modbus_send_raw_request(context, request.begin(), static_cast<int>(request.size())) < 0) {
+  Telegram addressed = request;
+  addressed[0] = static_cast<std::uint8_t>(parameters_.unit);
+  if (modbus_send_raw_request(context, addressed.begin(), static_cast<int>(addressed.size())) < 0) {
     lose_connection();
     return unavailable("the drive does not take requests");
   }

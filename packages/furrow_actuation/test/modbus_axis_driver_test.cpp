@@ -64,6 +64,22 @@ TEST(SimulatedDriveStates, EveryCommandInEveryState) {
   EXPECT_EQ(after(Phase::kFaulted, 0x80, 0x80), Phase::kFaulted);  // no edge, no reset
 }
 
+TEST(SimulatedDriveTime, ManySmallStepsAreOneLargeOne) {
+  const auto position_after = [](double step_s) {
+    SimulatedDrive drive;
+    drive.force_phase(Phase::kOperating);
+    EXPECT_EQ(drive.write(0x6060, 0, 1), SimulatedDrive::Answer::kOk);
+    EXPECT_EQ(drive.write(0x607A, 0, 100000), SimulatedDrive::Answer::kOk);
+    EXPECT_EQ(drive.write(0x6040, 0, 0x1F), SimulatedDrive::Answer::kOk);
+    for (double t_s = 0.0; t_s < 0.5 - step_s / 2.0; t_s += step_s) drive.advance(step_s);
+    return drive.position();
+  };
+  const double expected = position_after(0.5);
+  EXPECT_GT(expected, 30000.0);
+  EXPECT_NEAR(position_after(2e-5), expected, 100.0);
+  EXPECT_NEAR(position_after(0.00037), expected, 100.0);
+}
+
 /// A driver against the drive over a real connection on the loopback. The drive's time moves by one
 /// millisecond with each request, so nothing here depends on the machine's speed.
 class Wire {

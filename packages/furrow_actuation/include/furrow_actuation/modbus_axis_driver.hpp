@@ -14,6 +14,7 @@ namespace furrow::actuation::cia402 {
 struct ModbusAxisParameters {
   std::string address = "127.0.0.1";
   std::int64_t port = 502;
+  std::int64_t unit = 0;
   double timeout_s = 0.02;
   double counts_per_m = 100000.0;
   double homing_speed_mps = 0.05;
