@@ -11,6 +11,9 @@ void add_graph_command(CLI::App& app, int& exit_code);
 void add_params_command(CLI::App& app, int& exit_code);
 void add_dataset_command(CLI::App& app, int& exit_code);
 void add_field_command(CLI::App& app, int& exit_code);
+void add_field_import_command(CLI::App& app, int& exit_code);
+void add_eval_command(CLI::App& app, int& exit_code);
+void add_bench_command(CLI::App& app, int& exit_code);
 void add_topic_command(CLI::App& app, int& exit_code);
 
 }  // namespace furrow::cli
