@@ -18,6 +18,47 @@ bool is_depth(float depth_m) {
   return std::isfinite(depth_m) && depth_m > 0.0f;
 }
 
+struct MedianDepths {
+  double ground_m = 0.0;
+  double canopy_m = 0.0;
+};
+
+double median(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of the soil around a plant and of the plant; nothing where either is not known.
+std::optional<MedianDepths> depths_at(const RgbdView& view, const cv::Mat& vegetation,
+                                      const Instance& instance) {
+  if (view.depth_m.empty() || !instance.depth_measured) return std::nullopt;
+  constexpr std::size_t kMinSamples = 10;
+  const cv::Rect& box = instance.box_px;
+  const int margin = std::max(4, std::max(box.width, box.height) / 8);
+  const cv::Rect around =
+      cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
+      cv::Rect(cv::Point(), view.bgr.size());
+  // A sample of the pixels gives the medians as well.
+  const int step = std::max(1, std::min(box.width, box.height) / 32);
+  std::vector<float> ground, canopy;
+  for (int v = around.y; v < around.y + around.height; v += step) {
+    const float* depth = view.depth_m.ptr<float>(v);
+    const auto* plants = vegetation.ptr<std::uint8_t>(v);
+    for (int u = around.x; u < around.x + around.width; u += step) {
+      if (!is_depth(depth[u])) continue;
+      if (plants[u] == 0) {
+        ground.push_back(depth[u]);
+      } else if (box.contains({u, v}) &&
+                 instance.mask.at<std::uint8_t>(v - box.y, u - box.x) != 0) {
+        canopy.push_back(depth[u]);
+      }
+    }
+  }
+  if (ground.size() < kMinSamples || canopy.empty()) return std::nullopt;
+  return MedianDepths{median(ground), median(canopy)};
+}
+
 }  // namespace
 
 Status check_view(const RgbdView& view) {
@@ -90,9 +131,7 @@ void measure_instance(const RgbdView& view, Instance& instance) {
   instance.depth_measured = !depths.empty() && static_cast<int>(depths.size()) * 10 >= pixels;
   double fill_m = view.ground_distance_m;
   if (instance.depth_measured) {
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    fill_m = *middle;
+    fill_m = median(depths);
   } else {
     depths.clear();
     squares_m2 = 0.0;
@@ -117,42 +156,20 @@ void measure_instance(const RgbdView& view, Instance& instance) {
 }
 
 void place_stem_on_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance) {
-  if (view.depth_m.empty() || !instance.depth_measured) return;
-  constexpr std::size_t kMinSamples = 10;
-  const cv::Rect& box = instance.box_px;
-  const int margin = std::max(4, std::max(box.width, box.height) / 8);
-  const cv::Rect around =
-      cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
-      cv::Rect(cv::Point(), view.bgr.size());
-  // A sample of the pixels gives the medians as well.
-  const int step = std::max(1, std::min(box.width, box.height) / 32);
-  std::vector<float> ground, canopy;
-  for (int v = around.y; v < around.y + around.height; v += step) {
-    const float* depth = view.depth_m.ptr<float>(v);
-    const auto* plants = vegetation.ptr<std::uint8_t>(v);
-    for (int u = around.x; u < around.x + around.width; u += step) {
-      if (!is_depth(depth[u])) continue;
-      if (plants[u] == 0) {
-        ground.push_back(depth[u]);
-      } else if (box.contains({u, v}) &&
-                 instance.mask.at<std::uint8_t>(v - box.y, u - box.x) != 0) {
-        canopy.push_back(depth[u]);
-      }
-    }
-  }
-  if (ground.size() < kMinSamples || canopy.empty()) return;
-  const auto median = [](std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return static_cast<double>(*middle);
-  };
-  const double ground_m = median(ground);
-  const double ratio = median(canopy) / ground_m;
-  instance.stem_depth_m = ground_m;
+  const auto depths = depths_at(view, vegetation, instance);
+  if (!depths) return;
+  const double ratio = depths->canopy_m / depths->ground_m;
+  instance.stem_depth_m = depths->ground_m;
   if (ratio >= 1.0) return;
   const auto& intrinsics = view.camera.intrinsics();
   const Eigen::Vector2d axis(intrinsics.cx_px, intrinsics.cy_px);
   instance.stem_px = axis + ratio * (instance.stem_px - axis);
+}
+
+void set_stem_depth_to_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance) {
+  if (const auto depths = depths_at(view, vegetation, instance)) {
+    instance.stem_depth_m = depths->ground_m;
+  }
 }
 
 }  // namespace furrow::vision

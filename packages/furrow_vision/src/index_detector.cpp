@@ -7,6 +7,7 @@
 
 #include "check_ranges.hpp"
 #include "crop_rows.hpp"
+#include "instance_cutting.hpp"
 #include "plant_grouping.hpp"
 
 namespace furrow::vision {
@@ -14,48 +15,6 @@ namespace {
 
 /// Fewer pixels than this a row spacing, and a row cannot be told.
 constexpr double kMinRowSpacing_px = 8.0;
-
-/// The plant of a full-resolution pixel: that of its cell, or of a neighbouring one where the cell
-/// holds too little vegetation to be one itself.
-int label_at(const cv::Mat& labels, int v, int u) {
-  const int own = labels.at<int>(v, u);
-  if (own != 0) return own;
-  for (int b = std::max(v - 1, 0); b <= std::min(v + 1, labels.rows - 1); ++b) {
-    for (int a = std::max(u - 1, 0); a <= std::min(u + 1, labels.cols - 1); ++a) {
-      if (labels.at<int>(b, a) != 0) return labels.at<int>(b, a);
-    }
-  }
-  return 0;
-}
-
-/// Boxes and masks of the plants at full resolution, from their labels at 1 / cell of it.
-std::vector<Instance> cut_instances(const cv::Mat& mask, const PlantGroups& groups, int cell) {
-  std::vector<Instance> instances(groups.stem_px.size());
-  std::vector<cv::Point> low(instances.size(), {mask.cols, mask.rows}), high(instances.size());
-  cv::Mat full = cv::Mat::zeros(mask.size(), CV_32S);
-  for (int v = 0; v < mask.rows; ++v) {
-    const auto* set = mask.ptr<std::uint8_t>(v);
-    int* out = full.ptr<int>(v);
-    const int cell_v = std::min(v / cell, groups.labels.rows - 1);
-    for (int u = 0; u < mask.cols; ++u) {
-      if (set[u] == 0) continue;
-      const int label = label_at(groups.labels, cell_v, std::min(u / cell, groups.labels.cols - 1));
-      if (label == 0) continue;
-      out[u] = label;
-      low[label - 1] = {std::min(low[label - 1].x, u), std::min(low[label - 1].y, v)};
-      high[label - 1] = {std::max(high[label - 1].x, u + 1), std::max(high[label - 1].y, v + 1)};
-    }
-  }
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    if (high[i].x == 0) continue;  // no pixel; an empty box
-    instances[i].box_px = cv::Rect(low[i], high[i]);
-    instances[i].mask = full(instances[i].box_px) == static_cast<int>(i) + 1;
-    // Centres of cells to centres of pixels.
-    instances[i].stem_px = groups.stem_px[i] * cell + Eigen::Vector2d::Constant(0.5 * (cell - 1));
-  }
-  std::erase_if(instances, [](const Instance& instance) { return instance.mask.empty(); });
-  return instances;
-}
 
 double log_normal(double value, double median, double log_sd) {
   const double z = (std::log(value) - std::log(median)) / log_sd;
@@ -108,7 +67,13 @@ Result<std::vector<Instance>> IndexDetector::detect(const RgbdView& view) {
                               .split_min_area_px = p.split_min_area_mm2 / (cell_mm * cell_mm),
                               .stem_kernel_factor = p.stem_kernel_factor,
                               .max_plants = kMaxPlants});
-    plants = cut_instances(vegetation.mask, groups, cell);
+    plants = cut_instances(vegetation.mask, groups.labels, {1.0 / cell, 1.0 / cell},
+                           groups.stem_px.size());
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+      // Centres of cells to centres of pixels.
+      plants[i].stem_px = groups.stem_px[i] * cell + Eigen::Vector2d::Constant(0.5 * (cell - 1));
+    }
+    std::erase_if(plants, [](const Instance& plant) { return plant.mask.empty(); });
   }
   for (Instance& plant : plants) {
     measure_instance(view, plant);

@@ -89,4 +89,8 @@ void measure_instance(const RgbdView& view, Instance& instance);
 /// changes. @pre vegetation is CV_8U of the image's size, not zero where plants are.
 void place_stem_on_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance);
 
+/// Sets stem_depth_m, of a stem that was found as its foot on the ground, to the depth of the soil
+/// around the box; without depth there nothing changes. @pre as place_stem_on_ground.
+void set_stem_depth_to_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance);
+
 }  // namespace furrow::vision

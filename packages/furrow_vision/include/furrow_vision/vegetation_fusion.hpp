@@ -1,0 +1,32 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "furrow_core/parameters.hpp"
+#include "furrow_vision/vegetation_index.hpp"
+
+namespace furrow::vision {
+
+/// What visit() declares says each.
+struct VegetationFusionParameters {
+  std::string source = "both";  ///< network, index, both
+  double plant_threshold = 0.5;
+  double network_weight = 1.0;
+  double network_logit_max = 4.0;
+  double index_scale = 8.0;
+  VegetationParameters index;
+  void visit(ParameterVisitor& v);
+};
+
+/// A vegetation mask (CV_8U, 255 plant) of the image's size from a network's coarse logit of
+/// "plant" (CV_32F, any size; it covers the same view) and the vegetation index, which is fine at
+/// the edges and holds on plants and light that the network never saw. With "both" a pixel is
+/// vegetation when
+///   network_weight * clamp(logit, +-network_logit_max) - logit(plant_threshold)
+///     + clamp((index - threshold) / index_scale, +-2 network_logit_max) > 0;
+/// an image in which the index finds soil only takes the network alone.
+[[nodiscard]] cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation,
+                                      const VegetationFusionParameters& parameters);
+
+}  // namespace furrow::vision

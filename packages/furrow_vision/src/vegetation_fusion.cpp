@@ -1,0 +1,74 @@
+#include "furrow_vision/vegetation_fusion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+namespace furrow::vision {
+
+void VegetationFusionParameters::visit(ParameterVisitor& v) {
+  v.visit({.name = "vegetation_source",
+           .description = "What the mask of plants is made of: the network, the vegetation index, "
+                          "or both together",
+           .choices = {"network", "index", "both"}},
+          source);
+  v.visit({.name = "plant_threshold",
+           .description = "Probability of a plant from which on a pixel is one",
+           .min = 0.01,
+           .max = 0.99},
+          plant_threshold);
+  v.visit({.name = "network_weight",
+           .description = "Of the network's log-odds beside the index",
+           .min = 0.0,
+           .max = 10.0},
+          network_weight);
+  v.visit({.name = "network_logit_max",
+           .description = "The network's log-odds are cut to this, so that the index can overrule",
+           .min = 0.1,
+           .max = 50.0},
+          network_logit_max);
+  v.visit({.name = "index_scale",
+           .description = "Levels of the index above its threshold that are one unit of log-odds",
+           .min = 0.5,
+           .max = 200.0},
+          index_scale);
+  index.visit(v);
+}
+
+cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation,
+                        const VegetationFusionParameters& parameters) {
+  if (parameters.source == "index") return vegetation.mask.clone();
+  const auto bias =
+      static_cast<float>(std::log(parameters.plant_threshold / (1.0 - parameters.plant_threshold)));
+  const bool index_too = parameters.source == "both" && vegetation.found;
+  cv::Mat logit;
+  cv::resize(plant_logit, logit, vegetation.index.size(), 0.0, 0.0, cv::INTER_LINEAR);
+  // Of each level of the index, once.
+  std::array<float, 256> evidence{};
+  const double most = 2.0 * parameters.network_logit_max;
+  for (int i = 0; index_too && i < 256; ++i) {
+    evidence[i] = static_cast<float>(
+        std::clamp((i - vegetation.threshold - 0.5) / parameters.index_scale, -most, most));
+  }
+  const auto weight = static_cast<float>(index_too ? parameters.network_weight : 1.0);
+  const auto cut = index_too ? static_cast<float>(parameters.network_logit_max)
+                             : std::numeric_limits<float>::max();
+  cv::Mat mask(vegetation.index.size(), CV_8U);
+  for (int v = 0; v < mask.rows; ++v) {
+    const float* l = logit.ptr<float>(v);
+    const auto* index = vegetation.index.ptr<std::uint8_t>(v);
+    auto* out = mask.ptr<std::uint8_t>(v);
+    for (int u = 0; u < mask.cols; ++u) {
+      const float sum = weight * std::min(std::max(l[u], -cut), cut) + evidence[index[u]];
+      out[u] = sum > bias ? 255 : 0;
+    }
+  }
+  if (index_too && parameters.index.median_px > 1) {
+    cv::medianBlur(mask, mask, static_cast<int>(parameters.index.median_px) | 1);
+  }
+  return mask;
+}
+
+}  // namespace furrow::vision
