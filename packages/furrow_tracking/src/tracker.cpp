@@ -97,6 +97,9 @@ void Tracker::Impl::prepare(const View& view, std::span<const Observation> obser
   prepared_.clear();
   const auto bound = static_cast<std::size_t>(parameters_.max_observations);
   const std::size_t looked_at = std::min(observations.size(), bound);
+  const double pose_sigma_m = largest_sigma_m(view.pose_covariance.topLeftCorner<2, 2>());
+  const double shared = std::min(parameters_.max_pose_sigma_m / std::max(pose_sigma_m, 1e-12), 1.0);
+  const Eigen::Matrix3d pose_covariance = shared * shared * view.pose_covariance;
   summary.overflow = static_cast<std::int32_t>(observations.size() - looked_at);
   for (std::size_t i = 0; i < looked_at; ++i) {
     const Observation& seen = observations[i];
@@ -115,8 +118,7 @@ void Tracker::Impl::prepare(const View& view, std::span<const Observation> obser
     Eigen::Matrix<double, 2, 3> by_pose;
     by_pose << 1.0, 0.0, -(seen.p_F_m.y() - view.X_FB.y_m),  //
         0.0, 1.0, seen.p_F_m.x() - view.X_FB.x_m;
-    prepared.covariance =
-        seen.covariance_F_m2 + by_pose * view.pose_covariance * by_pose.transpose();
+    prepared.covariance = seen.covariance_F_m2 + by_pose * pose_covariance * by_pose.transpose();
     if (seen.truncated) {
       const double sigma_m = parameters_.truncated_sigma_ratio * seen.radius_m;
       prepared.covariance.diagonal().array() += sigma_m * sigma_m;

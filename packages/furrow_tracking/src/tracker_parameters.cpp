@@ -117,6 +117,13 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 10.0},
           truncated_sigma_ratio);
+  v.visit({.name = "max_pose_sigma_m",
+           .unit = "m",
+           .description = "standard deviation of the pose that may differ from view to view; a "
+                          "greater one is drift, which views share",
+           .min = 0.0,
+           .max = 10.0},
+          max_pose_sigma_m);
   v.visit({.name = "outlier_sigma",
            .description = "standard deviations from which on an observation's weight is reduced",
            .min = 1.0,

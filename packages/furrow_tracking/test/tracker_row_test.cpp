@@ -253,5 +253,22 @@ TEST(TrackerOnARow, AStepWithTwoHundredPlantsInViewTakesLessThanTwoMilliseconds)
 #endif
 }
 
+// Dead reckoning knows less and less of where the robot is, yet one view from the next to the
+// millimetre: what it does not know is common to both, and must not make plants run together.
+TEST(TrackerOnARow, DriftThatViewsShareDoesNotMixPlants) {
+  const Row row(11, {});
+  Tracker tracker;
+  TrackingEvaluation evaluation(0.05);
+  for (int i = 0; i < row.views(); ++i) {
+    View view = row.view(i);
+    const std::vector<Observation> observations = row.observe(view);
+    view.pose_covariance = Eigen::Vector3d(1.0, 1.0, 0.01).asDiagonal();
+    tracker.update(view, observations);
+    ASSERT_TRUE(evaluation.add_frame(row.truth_in(view), tracked_in(tracker, view)).ok());
+  }
+  const TrackingScores scores = evaluation.scores();
+  EXPECT_LE(static_cast<double>(scores.id_switches), 0.01 * static_cast<double>(scores.truth_ids));
+}
+
 }  // namespace
 }  // namespace furrow::tracking

@@ -36,6 +36,7 @@ struct TrackerParameters {
   double position_floor_m = 0.0005;
   double drift_m_per_sqrt_s = 0.0005;
   double truncated_sigma_ratio = 0.5;
+  double max_pose_sigma_m = 0.010;
   double outlier_sigma = 3.0;
   double class_floor = 0.1;
   double class_evidence_weight = 1.0;
@@ -80,7 +81,9 @@ struct UpdateSummary {
 /// of one view to the tracks (by distance over a dynamic radius, Halstead et al. 2021, or one of
 /// two baselines, with optimal linear assignment), refines positions by a Kalman filter and class
 /// by Bayes' rule. The result does not depend on the order of the observations. Errors of the pose
-/// are taken as independent from view to view; `position_floor_m` bounds what averaging may claim.
+/// are taken as independent from view to view, up to `max_pose_sigma_m`: what is beyond is drift,
+/// common to views that follow each other, and moves all plants alike. `position_floor_m` bounds
+/// what averaging may claim.
 ///
 /// Cost: about linear in the plants in view; buffers are reused. Not thread-safe.
 class Tracker {
