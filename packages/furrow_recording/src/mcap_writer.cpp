@@ -96,11 +96,19 @@ class Writer::Impl {
     }
     pending_[message.channel_id].emplace_back(message.log_time, chunk_.size());
     ByteWriter out(chunk_);
-    put(out, message);
+    put_head(out, message);
     start_ = pending_messages_ == 0 ? message.log_time : std::min(start_, message.log_time);
     end_ = pending_messages_ == 0 ? message.log_time : std::max(end_, message.log_time);
     ++pending_messages_;
-    return chunk_.size() >= options_.chunk_bytes ? flush() : Status();
+    if (chunk_.size() + message.data.size() < options_.chunk_bytes) {
+      out.raw(message.data);
+      return {};
+    }
+    if (options_.compression == Compression::kNone) {
+      return end_chunk(message.data);
+    }
+    out.raw(message.data);
+    return end_chunk({});
   }
 
   Status write(const Attachment& attachment) {
@@ -132,12 +140,7 @@ class Writer::Impl {
     if (Status status = writable(); !status || pending_messages_ == 0) {
       return status;
     }
-    const Status status = write_chunk();
-    if (!status) {
-      lost_ += pending_messages_;
-    }
-    clear_chunk();
-    return status;
+    return end_chunk({});
   }
 
   Status close() {
@@ -225,32 +228,45 @@ class Writer::Impl {
     return append({scratch_});
   }
 
-  Status write_chunk() {
+  /// `tail`: records' bytes behind those in memory, not copied; without compression only.
+  Status end_chunk(ByteView tail) {
+    const Status status = write_chunk(tail);
+    if (!status) {
+      lost_ += pending_messages_;
+    }
+    clear_chunk();
+    return status;
+  }
+
+  Status write_chunk(ByteView tail) {
     auto packed = packer_.pack(chunk_);
     if (!packed) {
       return packed.error();
     }
-    const std::uint32_t chunk_crc = crc32(chunk_);
+    const std::uint32_t head_crc = crc32(chunk_);
+    const std::uint32_t tail_crc = crc32(tail);
+    const std::uint32_t chunk_crc = crc32_combine(head_crc, tail_crc, tail.size());
+    const std::uint64_t records = packed->size() + tail.size();
     ChunkIndex index;
     index.start_time = start_;
     index.end_time = end_;
     index.offset = position_;
     index.compression = compression_name(options_.compression);
-    index.compressed_size = packed->size();
-    index.uncompressed_size = chunk_.size();
+    index.compressed_size = records;
+    index.uncompressed_size = chunk_.size() + tail.size();
 
     scratch_.clear();
     ByteWriter out(scratch_);
     const std::size_t fields = 8 + 8 + 8 + 4 + 4 + index.compression.size() + 8;
     out.number(static_cast<std::uint8_t>(Opcode::kChunk));
-    out.number(static_cast<std::uint64_t>(fields + packed->size()));
+    out.number(static_cast<std::uint64_t>(fields + records));
     out.time(index.start_time);
     out.time(index.end_time);
     out.number(index.uncompressed_size);
     out.number(chunk_crc);
     out.string(index.compression);
     out.number(index.compressed_size);
-    index.length = scratch_.size() + packed->size();
+    index.length = scratch_.size() + records;
 
     indexes_.clear();
     ByteWriter index_out(indexes_);
@@ -264,8 +280,8 @@ class Writer::Impl {
     index.message_index_length = indexes_.size();
 
     const bool plain = options_.compression == Compression::kNone;
-    const Part records(*packed, plain ? chunk_crc : crc32(*packed));
-    if (Status status = append({scratch_, records, indexes_}); !status) {
+    const Part head(*packed, plain ? head_crc : crc32(*packed));
+    if (Status status = append({scratch_, head, Part(tail, tail_crc), indexes_}); !status) {
       return status;
     }
     chunks_.push_back(std::move(index));

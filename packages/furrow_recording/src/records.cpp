@@ -44,13 +44,17 @@ void put(ByteWriter& out, const Channel& channel) {
   out.end_record(at);
 }
 
-void put(ByteWriter& out, const Message& message) {
+void put_head(ByteWriter& out, const Message& message) {
   out.number(static_cast<std::uint8_t>(Opcode::kMessage));
   out.number(static_cast<std::uint64_t>(kMessageHeaderBytes + message.data.size()));
   out.number(message.channel_id);
   out.number(message.sequence);
   out.time(message.log_time);
   out.time(message.publish_time);
+}
+
+void put(ByteWriter& out, const Message& message) {
+  put_head(out, message);
   out.raw(message.data);
 }
 

@@ -67,6 +67,8 @@ void put(ByteWriter& out, const Header& header);
 void put(ByteWriter& out, const Schema& schema);
 void put(ByteWriter& out, const Channel& channel);
 void put(ByteWriter& out, const Message& message);
+/// All of a Message record but its data.
+void put_head(ByteWriter& out, const Message& message);
 void put(ByteWriter& out, const MessageIndex& index);
 void put(ByteWriter& out, const ChunkIndex& index);
 void put(ByteWriter& out, const Attachment& attachment);
