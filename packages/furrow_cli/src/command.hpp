@@ -13,6 +13,8 @@ void add_dataset_command(CLI::App& app, int& exit_code);
 void add_field_command(CLI::App& app, int& exit_code);
 void add_field_import_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
+void add_eval_tracking_command(CLI::App& app, int& exit_code);
+void add_eval_trial_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_topic_command(CLI::App& app, int& exit_code);
 

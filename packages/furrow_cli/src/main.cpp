@@ -16,6 +16,8 @@ int main(int argc, char** argv) {
   furrow::cli::add_field_command(app, exit_code);
   furrow::cli::add_field_import_command(app, exit_code);
   furrow::cli::add_eval_command(app, exit_code);
+  furrow::cli::add_eval_tracking_command(app, exit_code);
+  furrow::cli::add_eval_trial_command(app, exit_code);
   furrow::cli::add_bench_command(app, exit_code);
   furrow::cli::add_topic_command(app, exit_code);
   constexpr int kBadUsage = 2;

@@ -21,7 +21,8 @@ struct Collector {
 
 void add_collector(const std::shared_ptr<Collector>& collector, graph::GraphSpec& graph,
                    graph::Registry& registry) {
-  graph::ComponentClass type{.name = kName};
+  graph::ComponentClass type;
+  type.name = kName;
   type.description.doc("Keeps what sensors and detector tell.")
       .input<topics::WheelOdometry>()
       .input<topics::Imu>()

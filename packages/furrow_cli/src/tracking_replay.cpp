@@ -95,9 +95,14 @@ class Replay {
     return at == log_.truth.end() ? log_.truth.back() : *at;
   }
 
+  [[nodiscard]] Result<localization::PoseEstimate> pose_at(Time stamp) const {
+    if (options_.pose != PoseSource::kTruth) return filter_.predict(stamp);
+    return localization::PoseEstimate{.stamp = stamp, .X_FB = truth_at(stamp).X_FB};
+  }
+
   void track(const furrow_msgs::msg::PlantInstances& message) {
     const Time stamp = stamp_of(message);
-    const auto pose = filter_.predict(stamp);
+    const auto pose = pose_at(stamp);
     if (!pose.ok()) {
       ++result_.frames_without_pose;
       return;
@@ -205,9 +210,11 @@ std::string_view to_string(PoseSource source) {
     case PoseSource::kGnss:
       return "gnss";
     case PoseSource::kFused:
+      return "fused";
+    case PoseSource::kTruth:
       break;
   }
-  return "fused";
+  return "truth";
 }
 
 ReplayResult replay_tracking(const SensingLog& log, const geometry::CameraModel& camera,

@@ -20,6 +20,7 @@ enum class PoseSource : std::uint8_t {
   kOdometry,  ///< wheels and gyroscope, from the true start on
   kGnss,      ///< GNSS alone
   kFused,
+  kTruth,  ///< where the robot truly is, for comparison
 };
 [[nodiscard]] std::string_view to_string(PoseSource source);
 

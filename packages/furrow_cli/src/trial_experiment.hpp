@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "furrow_ledger/ledger.hpp"
+
+namespace furrow::cli {
+
+/// One stretch of the trial.
+struct TrialRegion {
+  std::string field;  ///< a shipped preset, for its density
+  bool crop = true;
+};
+
+/// The paper's field trial in the simulator, closed loop: stretches with weeds alone and with crop,
+/// from low to high density.
+struct TrialExperiment {
+  std::vector<TrialRegion> regions = {{"cn20_like", false},    {"sb20_s1_like", false},
+                                      {"sb21_s1_like", false}, {"cn20_like", true},
+                                      {"sb20_s1_like", true},  {"sb21_s1_like", true}};
+  std::string graph = "weeding_rtk";
+  /// Wind on the spray and jitter of the valves, over the graph's parameters.
+  std::vector<std::string> conditions = {"robot.spray_delay_jitter_s=0.001",
+                                         "robot.spray_drift_x_mps=0.03",
+                                         "robot.spray_drift_y_mps=0.05"};
+  double length_m = 12.0;  ///< of each region
+  std::uint64_t seed = 1;
+  int threads = 2;
+  std::vector<std::string> settings;           ///< over the conditions
+  std::filesystem::path folder = "out/trial";  ///< of the fields and of the regions' reports
+};
+
+struct TrialRow {
+  std::string region;  ///< "weed_only", "crop_weed", "all"
+  std::int64_t weeds_total = 0;
+  std::int64_t accurate = 0;
+  std::int64_t partial = 0;
+  std::int64_t missed = 0;
+  std::int64_t missed_vision = 0;
+  std::int64_t missed_planning = 0;
+  std::int64_t crops_total = 0;
+  std::int64_t crops_hit = 0;
+  double loss_pct = 0.0;
+  double paper_loss_pct = 0.0;
+};
+
+struct TrialStretch {
+  TrialRegion region;
+  double area_m2 = 0.0;
+  std::string report;  ///< folder of its report
+  ledger::Summary summary;
+  std::string map_svg;
+};
+
+struct TrialResult {
+  std::vector<TrialRow> rows;
+  std::vector<TrialStretch> stretches;
+};
+
+/// Throws ConfigError for what is asked wrongly, std::runtime_error when a run fails.
+[[nodiscard]] TrialResult run(const TrialExperiment& experiment,
+                              const std::function<void(double)>& progress);
+
+[[nodiscard]] std::string to_json(const TrialExperiment& experiment, const TrialResult& result,
+                                  std::string_view version);
+[[nodiscard]] std::string to_html(const TrialExperiment& experiment, const TrialResult& result,
+                                  std::string_view version);
+
+}  // namespace furrow::cli

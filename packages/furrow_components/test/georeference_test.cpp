@@ -1,0 +1,70 @@
+#include "furrow_components/georeference.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "furrow_core/error.hpp"
+
+namespace furrow::components {
+namespace {
+
+using localization::FixQuality;
+using localization::GnssPosition;
+
+GnssPosition position(FixQuality quality, double sigma_x_m, double sigma_y_m) {
+  GnssPosition position{.stamp = Time::from_seconds(2.5), .p_FA_m = {12.25, -3.5}};
+  position.quality = quality;
+  position.covariance = Eigen::Vector2d(sigma_x_m * sigma_x_m, sigma_y_m * sigma_y_m).asDiagonal();
+  return position;
+}
+
+TEST(Georeference, BringsAPositionThereAndBack) {
+  GeoreferenceParameters parameters;
+  parameters.row_angle_deg = 35.0;
+  const Georeference georeference(parameters);
+  const GnssPosition there = position(FixQuality::kRtkFixed, 0.008, 0.02);
+  const GnssPosition back = georeference.from_msg(georeference.to_msg(there));
+  EXPECT_EQ(back.stamp, there.stamp);
+  EXPECT_EQ(back.quality, FixQuality::kRtkFixed);
+  // Latitude and longitude in degrees keep about 1e-8 m.
+  EXPECT_NEAR((back.p_FA_m - there.p_FA_m).norm(), 0.0, 1e-6);
+  ASSERT_TRUE(back.covariance.has_value());
+  EXPECT_TRUE(back.covariance->isApprox(*there.covariance, 1e-9));
+}
+
+TEST(Georeference, TurnsTheCovarianceToEastAndNorth) {
+  GeoreferenceParameters parameters;
+  parameters.row_angle_deg = 90.0;  // the field's x points north
+  const auto fix = Georeference(parameters).to_msg(position(FixQuality::kRtkFixed, 0.01, 0.03));
+  EXPECT_NEAR(fix.position_covariance()[0], 0.03 * 0.03, 1e-12);
+  EXPECT_NEAR(fix.position_covariance()[4], 0.01 * 0.01, 1e-12);
+  EXPECT_GT(fix.latitude(), parameters.origin_latitude_deg);
+}
+
+TEST(Georeference, KeepsTheQuality) {
+  const Georeference georeference({});
+  for (const auto& [quality, sigma_m] : {std::pair{FixQuality::kNone, 1.0},
+                                         {FixQuality::kSingle, 1.5},
+                                         {FixQuality::kDifferential, 0.5},
+                                         {FixQuality::kRtkFloat, 0.15},
+                                         {FixQuality::kRtkFixed, 0.01}}) {
+    const auto fix = georeference.to_msg(position(quality, sigma_m, sigma_m));
+    EXPECT_EQ(georeference.from_msg(fix).quality, quality) << to_string(quality);
+  }
+}
+
+TEST(Georeference, LeavesAnUnknownCovarianceUnknown) {
+  const Georeference georeference({});
+  const auto fix = georeference.to_msg(position(FixQuality::kRtkFixed, 0.0, 0.0));
+  EXPECT_FALSE(georeference.from_msg(fix).covariance.has_value());
+}
+
+TEST(Georeference, RefusesAnOriginThatIsNotOnTheEarth) {
+  GeoreferenceParameters parameters;
+  parameters.origin_latitude_deg = NAN;
+  EXPECT_THROW((void)Georeference(parameters), ConfigError);
+}
+
+}  // namespace
+}  // namespace furrow::components
