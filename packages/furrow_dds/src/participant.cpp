@@ -13,7 +13,6 @@
 namespace furrow::dds {
 
 namespace fdds = eprosima::fastdds::dds;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
