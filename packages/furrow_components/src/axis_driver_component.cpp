@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "axis_diagnostics.hpp"
+#include "axis_driver_parameters.hpp"
 #include "furrow_actuation/axis_controller.hpp"
-#include "furrow_actuation/simulated_axis_driver.hpp"
+#include "furrow_actuation/drive_supervisor.hpp"
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/nozzle_file.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -19,60 +22,17 @@ namespace topics = msgs::topics;
 using actuation::ControllerEvent;
 using actuation::ControllerEventKind;
 
-struct Parameters {
-  std::string tool_file;
-  std::string axis;
-  std::string driver = "simulated";
-  double rate_hz = 500.0;
-  double state_rate_hz = 50.0;
-  double crop_threshold = 0.5;
-  double protected_range_m = 1.0;
-  actuation::AxisControllerParameters controller;
-  actuation::NozzleCalibration nozzle;
-  actuation::SimulatedAxisParameters simulated{.start_ready = true};
-
-  void visit(ParameterVisitor& v) {
-    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
-    v.visit({.name = "axis", .description = "joint of the URDF that is driven"}, axis);
-    v.visit({.name = "driver",
-             .description = "simulated: a servo within the URDF's limits",
-             .choices = {"simulated"}},
-            driver);
-    v.visit({.name = "rate_hz",
-             .unit = "Hz",
-             .description = "control loop",
-             .min = 10.0,
-             .max = 5000.0},
-            rate_hz);
-    v.visit({.name = "state_rate_hz",
-             .unit = "Hz",
-             .description = "published states",
-             .min = 1.0,
-             .max = 1000.0},
-            state_rate_hz);
-    v.visit({.name = "crop_threshold",
-             .description = "tracks at or above this probability are protected",
-             .min = 0.0,
-             .max = 1.0},
-            crop_threshold);
-    v.visit({.name = "protected_range_m",
-             .unit = "m",
-             .description = "crops this far before and behind the axis are watched",
-             .min = 0.1,
-             .max = 10.0},
-            protected_range_m);
-    controller.visit(v);
-    PrefixedVisitor nozzle_visitor(v, "nozzle_");
-    nozzle.visit(nozzle_visitor);
-    PrefixedVisitor simulated_visitor(v, "simulated_");
-    simulated.visit(simulated_visitor);
-  }
-};
-
 const geometry::AxisModel& find_axis(const geometry::ToolModel& tool, const std::string& name) {
   const auto it = std::ranges::find(tool.axes, name, &geometry::AxisModel::name);
   if (it == tool.axes.end()) throw ConfigError("axis: the tool has no joint '" + name + "'");
   return *it;
+}
+
+AxisDriverParameters with_nozzle_file(AxisDriverParameters parameters) {
+  if (!parameters.nozzle_file.empty()) {
+    parameters.nozzle = load_nozzle(parameters.nozzle_file, parameters.axis);
+  }
+  return parameters;
 }
 
 /// What the ledger calls it when a stop was not sprayed.
@@ -100,28 +60,35 @@ class AxisDriverComponent final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
     d.doc("One axis and its nozzle: moves to its stops, fires, and stays safe by itself.")
-        .parameters<Parameters>()
+        .parameters<AxisDriverParameters>()
         .input<topics::Plan>()
+        .input<topics::PlannerHeartbeat>()
         .input<topics::RobotOdometry>()
         .input<topics::Tracks>()
         .input<topics::EmergencyStop>(graph::Need::kOptional)
+        .input<topics::ToolReset>(graph::Need::kOptional)
         .output<topics::AxisState>()
         .output<topics::AxisEvent>()
-        .output<topics::JointStates>();
+        .output<topics::JointStates>()
+        .output<topics::Diagnostics>();
   }
 
   explicit AxisDriverComponent(graph::Context& context)
       : context_(context),
-        parameters_(context.parameters<Parameters>()),
+        parameters_(with_nozzle_file(context.parameters<AxisDriverParameters>())),
         axis_(find_axis(geometry::load_tool_model(parameters_.tool_file), parameters_.axis)),
         controller_(axis_, parameters_.nozzle, parameters_.controller),
-        driver_(std::make_unique<actuation::SimulatedAxisDriver>(actuation::MotionLimits::of(axis_),
-                                                                 parameters_.simulated)),
+        driver_(make_axis_driver(parameters_.hardware, actuation::MotionLimits::of(axis_))),
+        valve_(make_valve(parameters_.hardware)),
         state_out_(context.output<topics::AxisState>()),
         event_out_(context.output<topics::AxisEvent>()),
         joint_out_(context.output<topics::JointStates>()),
-        period_(Duration::seconds(1.0 / parameters_.rate_hz)) {
+        diagnostics_out_(context.output<topics::Diagnostics>()),
+        period_(Duration::seconds(1.0 / parameters_.rate_hz)),
+        heartbeat_deadline_(Duration::seconds(parameters_.heartbeat_deadline_s)) {
     context.input<topics::Plan>([this](const auto& plan) { take(*plan); });
+    context.input<topics::PlannerHeartbeat>(
+        [this](const auto&) { last_heartbeat_ = context_.now(); });
     context.input<topics::RobotOdometry>([this](const auto& message) {
       const BaseOdometry base = from_msg(*message);
       controller_.set_odometry({base.stamp, base.X_FB, {base.speed_mps, 0.0, base.yaw_rate_radps}});
@@ -130,9 +97,16 @@ class AxisDriverComponent final : public graph::Component {
     context.input<topics::Tracks>([this](const auto& tracks) { protect(*tracks); });
     context.input<topics::EmergencyStop>(
         [this](const auto& stop) { controller_.set_emergency_stop(stop->active()); });
+    context.input<topics::ToolReset>([this](const auto& message) {
+      if (message->axis().empty() || message->axis() == axis_.name) reset();
+    });
     context.every(period_, [this](Time now) { control(now); });
     context.every(Duration::seconds(1.0 / parameters_.state_rate_hz),
                   [this](Time now) { publish_state(now); });
+    context.every(Duration::milliseconds(1000), [this](Time) {
+      diagnostics_out_.publish(
+          axis_diagnostics(context_.name(), state_, cause_time_, supervisor_.refusal()));
+    });
   }
 
  private:
@@ -175,43 +149,95 @@ class AxisDriverComponent final : public graph::Component {
     controller_.set_protected(protected_);
   }
 
-  void control(Time now) {
-    if (!driver_->read(now, period_).ok()) context_.count("read_errors");
-    controller_.set_reading(driver_->reading());
-    const actuation::ControllerOutput output = controller_.update(now, period_);
-    if (output.axis.mode != actuation::AxisCommandMode::kNone &&
-        !driver_->write(now, period_, output.axis).ok()) {
-      context_.count("write_errors");
-    }
-    for (std::size_t i = 0; i < output.events.size(); ++i) handle(output.events[i]);
-    mode_ = output.mode;
-    cause_ = output.cause;
+  void reset() {
+    if (!operational(driver_->reading().state)) supervisor_.reset(context_.now());
+    reset_pending_ = true;
   }
 
-  void handle(const ControllerEvent& event) {
+  static bool operational(actuation::AxisState state) {
+    return state == actuation::AxisState::kReady || state == actuation::AxisState::kMoving;
+  }
+
+  void control(Time now) {
+    if (!driver_->read(now, period_).ok()) context_.count("read_errors");
+    supervisor_.update(now, *driver_);
+    if (reset_pending_ && !supervisor_.busy()) {
+      reset_pending_ = false;
+      controller_.set_valve_fault(false);
+      controller_.reset();
+    }
+    controller_.set_reading(driver_->reading());
+    controller_.set_peer_lost(!last_heartbeat_ || now - *last_heartbeat_ > heartbeat_deadline_);
+    const actuation::ControllerOutput output = controller_.update(now, period_);
+    // First the valve, then the axis.
+    if (const Status set = valve_->write(now, output.valve_open); !set.ok()) {
+      context_.count("valve_errors");
+      controller_.set_valve_fault(true);
+    }
+    const Time valve_written = context_.now();
+    if (!driver_->write(now, period_, output.axis).ok()) context_.count("write_errors");
+    mode_ = output.mode;
+    cause_ = output.cause;
+    cause_time_ = output.cause_time;
+    for (std::size_t i = 0; i < output.events.size(); ++i) handle(output.events[i], valve_written);
+    report_start(now);
+  }
+
+  /// Until the tool runs for the first time, what it waits for.
+  void report_start(Time now) {
+    if (mode_ != actuation::ControllerMode::kWaiting) {
+      if (waiting_told_ && mode_ == actuation::ControllerMode::kRunning) {
+        context_.health(graph::HealthLevel::kOk, "");
+      }
+      waiting_told_ = false;
+      waiting_since_.reset();
+      return;
+    }
+    if (!waiting_since_) waiting_since_ = now;
+    if (waiting_told_ || now - *waiting_since_ < Duration::milliseconds(1000)) return;
+    waiting_told_ = true;
+    const std::string& refusal = supervisor_.refusal();
+    context_.health(graph::HealthLevel::kWarn,
+                    refusal.empty() ? "waits for plan, odometry and drive" : "drive: " + refusal);
+  }
+
+  void handle(const ControllerEvent& event, Time valve_written) {
     switch (event.kind) {
       case ControllerEventKind::kSprayOpened:
         opened_ = event;
+        opened_->time = valve_written;
         opened_velocity_mps_ = driver_->reading().velocity_mps;
         break;
       case ControllerEventKind::kSprayClosed:
-        sprayed(event);
+        sprayed(event, valve_written);
         break;
       case ControllerEventKind::kStopSkipped:
         context_.count("skipped_" + std::string(actuation::to_string(event.reason)));
         event_out_.publish(to_msg(event, reason_name(event.reason)));
         break;
       case ControllerEventKind::kMadeSafe:
-        context_.count("made_safe");
-        context_.health(graph::HealthLevel::kError, actuation::to_string(event.cause));
+        made_safe(event, valve_written);
         break;
       case ControllerEventKind::kReset:
         context_.health(graph::HealthLevel::kOk, "");
+        event_out_.publish(to_msg(event, "reset"));
         break;
     }
   }
 
-  void sprayed(const ControllerEvent& closed) {
+  void made_safe(const ControllerEvent& event, Time valve_written) {
+    const std::string cause(actuation::to_string(event.cause));
+    context_.count("made_safe");
+    context_.health(graph::HealthLevel::kError,
+                    cause + " at " + std::to_string(event.time.to_seconds()) + " s");
+    auto message = to_msg(event, "made_safe");
+    message.cause(cause);
+    message.opened(graph::to_msg(event.time));
+    message.closed(graph::to_msg(valve_written));
+    event_out_.publish(std::move(message));
+  }
+
+  void sprayed(const ControllerEvent& closed, Time valve_written) {
     if (!opened_) return;
     const ControllerEvent opened = *std::exchange(opened_, std::nullopt);
     context_.count("sprays");
@@ -219,7 +245,10 @@ class AxisDriverComponent final : public graph::Component {
     auto message = to_msg(opened, opened.dry_run ? "dry_run" : "sprayed");
     message.header(header(closed.time, kFieldFrame));
     message.opened(graph::to_msg(opened.time));
-    message.closed(graph::to_msg(closed.time));
+    message.closed(graph::to_msg(valve_written));
+    message.landing(to_point(closed.p_F));
+    const double open_s = opened.dry_run ? 0.0 : (valve_written - opened.time).to_seconds();
+    message.volume_ml(open_s * parameters_.nozzle.flow_mlps);
     message.position_opened_m(opened.q_m);
     message.velocity_opened_mps(opened_velocity_mps_);
     message.position_closed_m(closed.q_m);
@@ -252,9 +281,15 @@ class AxisDriverComponent final : public graph::Component {
     state.position_m(reading.position_m);
     state.velocity_mps(reading.velocity_mps);
     state.travel_m(travel_m_);
+    state.mode(std::string(actuation::to_string(mode_)));
+    const actuation::NozzleUse use = controller_.use(now);
+    state.openings(static_cast<std::uint64_t>(use.openings));
+    state.open_s(use.open_s);
+    state.volume_ml(use.volume_ml);
     if (mode_ == actuation::ControllerMode::kSafe) {
       state.fault(std::string(actuation::to_string(cause_)));
     }
+    state_ = state;
     state_out_.publish(std::move(state));
 
     sensor_msgs::msg::JointState joint;
@@ -266,14 +301,22 @@ class AxisDriverComponent final : public graph::Component {
   }
 
   graph::Context& context_;
-  Parameters parameters_;
+  AxisDriverParameters parameters_;
   geometry::AxisModel axis_;
   actuation::AxisController controller_;
   std::unique_ptr<actuation::AxisDriver> driver_;
+  std::unique_ptr<actuation::ValveDriver> valve_;
+  actuation::DriveSupervisor supervisor_;
   graph::Output<topics::AxisState> state_out_;
   graph::Output<topics::AxisEvent> event_out_;
   graph::Output<topics::JointStates> joint_out_;
+  graph::Output<topics::Diagnostics> diagnostics_out_;
   Duration period_;
+  Duration heartbeat_deadline_;
+  std::optional<Time> last_heartbeat_;
+  bool reset_pending_ = false;
+  std::optional<Time> waiting_since_;
+  bool waiting_told_ = false;
   std::vector<actuation::PlannedStop> stops_;
   std::vector<actuation::ProtectedPlant> protected_;
   double base_x_m_ = 0.0;
@@ -281,6 +324,8 @@ class AxisDriverComponent final : public graph::Component {
   double opened_velocity_mps_ = 0.0;
   actuation::ControllerMode mode_ = actuation::ControllerMode::kWaiting;
   actuation::SafetyCause cause_ = actuation::SafetyCause::kNone;
+  Time cause_time_;
+  furrow_msgs::msg::AxisState state_;  ///< last published
   std::optional<double> last_position_m_;
   double travel_m_ = 0.0;
 };

@@ -25,6 +25,7 @@ struct Parameters {
   std::string species_file;
   double crop_threshold = 0.5;
   double max_pose_age_s = 0.2;
+  double heartbeat_rate_hz = 50.0;
   planning::PlannerParameters planner;
   planning::HarmfulnessParameters harmfulness;
 
@@ -44,6 +45,12 @@ struct Parameters {
              .min = 0.01,
              .max = 10.0},
             max_pose_age_s);
+    v.visit({.name = "heartbeat_rate_hz",
+             .unit = "Hz",
+             .description = "that the planner is alive, for those who act on its plans",
+             .min = 1.0,
+             .max = 1000.0},
+            heartbeat_rate_hz);
     planner.visit(v);
     PrefixedVisitor harmfulness_visitor(v, "harmfulness_");
     harmfulness.visit(harmfulness_visitor);
@@ -144,7 +151,8 @@ class PlannerComponent final : public graph::Component {
         .input<topics::Tracks>()
         .input<topics::RobotOdometry>()
         .input<topics::AxisState>(graph::Need::kOptional)
-        .output<topics::Plan>();
+        .output<topics::Plan>()
+        .output<topics::PlannerHeartbeat>();
   }
 
   explicit PlannerComponent(graph::Context& context)
@@ -155,12 +163,15 @@ class PlannerComponent final : public graph::Component {
         seen_x_m_(camera_rear_x_m(tool_)),
         harmfulness_(with_species(parameters_.harmfulness, parameters_.species_file)),
         view_(planning::make_observation_view(parameters_.planner, specs(axes_))),
-        out_(context.output<topics::Plan>()) {
+        out_(context.output<topics::Plan>()),
+        heartbeat_out_(context.output<topics::PlannerHeartbeat>()) {
     context.input<topics::RobotOdometry>([this](const auto& message) {
       if (!poses_.add(from_msg(*message)).ok()) context_.count("bad_odometry");
     });
     context.input<topics::AxisState>([this](const auto& state) { watch(*state); });
     context.input<topics::Tracks>([this](const auto& tracks) { plan(*tracks); });
+    context.every(Duration::seconds(1.0 / parameters_.heartbeat_rate_hz),
+                  [this](Time now) { beat(now); });
   }
 
  private:
@@ -188,6 +199,14 @@ class PlannerComponent final : public graph::Component {
     if (*planned) context_.count("replanned");
     context_.health(graph::HealthLevel::kOk, "");
     publish(*base, tracks.header().stamp());
+  }
+
+  void beat(Time now) {
+    furrow_msgs::msg::Heartbeat message;
+    message.header(header(now, ""));
+    message.sender(context_.name());
+    message.count(++beats_);
+    heartbeat_out_.publish(std::move(message));
   }
 
   void take(const furrow_msgs::msg::Tracks& tracks) {
@@ -324,6 +343,8 @@ class PlannerComponent final : public graph::Component {
   planning::HarmfulnessModel harmfulness_;
   std::unique_ptr<planning::ObservationView> view_;
   graph::Output<topics::Plan> out_;
+  graph::Output<topics::PlannerHeartbeat> heartbeat_out_;
+  std::uint64_t beats_ = 0;
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::vector<planning::CropPhenotype> crops_;
   std::vector<std::int64_t> left_standing_;  ///< on purpose, by the newest tracks

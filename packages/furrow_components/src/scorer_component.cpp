@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/georeference.hpp"
 #include "furrow_components/pose_buffer.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
@@ -18,6 +20,7 @@ namespace topics = msgs::topics;
 struct Parameters {
   std::string tool_file;
   double path_step_m = 0.02;
+  GeoreferenceParameters georeference;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
@@ -27,6 +30,7 @@ struct Parameters {
              .min = 0.001,
              .max = 1.0},
             path_step_m);
+    georeference.visit(v);
   }
 };
 
@@ -97,6 +101,7 @@ class Scorer final : public graph::Component {
     if (axis == tool_.axes.end() || poses_.empty()) return;
     auto& path = record_.paths()[static_cast<std::size_t>(axis - tool_.axes.begin())];
     path.travel_m(state.travel_m());
+    states_[state.axis()] = state;
     const Time stamp = graph::from_msg(state.header().stamp());
     const auto base = poses_.at(stamp, Duration::seconds(0.1));
     if (!base.ok()) return;
@@ -117,6 +122,11 @@ class Scorer final : public graph::Component {
     record_.mean_speed_mps(duration_s > 0.0 ? status.distance_m() / duration_s : 0.0);
     for (const auto& [id, track] : tracks_) record_.tracks().push_back(track);
     for (const auto& [id, decision] : decisions_) record_.decisions().push_back(decision);
+    for (const auto& [axis, state] : states_) record_.axes().push_back(state);
+    record_.georeferenced(true);
+    record_.origin_latitude_deg(parameters_.georeference.origin_latitude_deg);
+    record_.origin_longitude_deg(parameters_.georeference.origin_longitude_deg);
+    record_.row_angle_rad(parameters_.georeference.row_angle_deg * std::numbers::pi / 180.0);
     out_.publish(record_);
   }
 
@@ -127,6 +137,7 @@ class Scorer final : public graph::Component {
   furrow_msgs::msg::RunRecord record_;
   std::map<std::int64_t, furrow_msgs::msg::Track> tracks_;
   std::map<std::int64_t, furrow_msgs::msg::Decision> decisions_;
+  std::map<std::string, furrow_msgs::msg::AxisState> states_;
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::optional<BaseOdometry> first_;
 };

@@ -21,10 +21,12 @@ enum Row : std::size_t {
   kInstances,
   kTracks,
   kPlan,
+  kPlannerHeartbeat,
   kAxisState,
   kAxisEvent,
   kJointStates,
   kEmergencyStop,
+  kToolReset,
   kTrueOdometry,
   kTrueField,
   kTrueInstances,
@@ -65,14 +67,18 @@ const std::array<Topic, kRows>& table() {
        "Every plant that is held in view or memory, refined over views; m, mm2."},
       {"planner/plan", &message_type<topics::Plan::Message>(), sensor_qos(5), 5, "field",
        "A route per axis and a decision for every track."},
+      {"planner/heartbeat", &message_type<topics::PlannerHeartbeat::Message>(), sensor_qos(1), 50,
+       "", "That the planner is alive; without it the tools make themselves safe."},
       {"axis/state", &message_type<topics::AxisState::Message>(), sensor_qos(50), 50, "",
        "Position, velocity and state of one axis; m, m/s."},
       {"axis/event", &message_type<topics::AxisEvent::Message>(), event_qos(), 0, "field",
-       "A spray that was made, or a stop that was skipped and why."},
+       "A spray that was made, a stop that was skipped and why, a tool made safe and why."},
       {"joint_states", &message_type<topics::JointStates::Message>(), sensor_qos(50), 50, "",
        "The axes as ROS 2 shows them; m, m/s."},
       {"emergency_stop", &message_type<topics::EmergencyStop::Message>(), latched_qos(), 0, "",
        "Valves shut and axes stopped while active."},
+      {"tool/reset", &message_type<topics::ToolReset::Message>(), event_qos(), 0, "",
+       "Lets axes that made themselves safe start again."},
       {"truth/odometry", &message_type<topics::TrueOdometry::Message>(), sensor_qos(50), 50,
        "field", "Simulation only: the true pose of the base."},
       {"truth/field", &message_type<topics::TrueField::Message>(), latched_qos(), 0, "field",
@@ -137,6 +143,9 @@ const Topic& Tracks::topic() {
 const Topic& Plan::topic() {
   return table()[kPlan];
 }
+const Topic& PlannerHeartbeat::topic() {
+  return table()[kPlannerHeartbeat];
+}
 const Topic& AxisState::topic() {
   return table()[kAxisState];
 }
@@ -148,6 +157,9 @@ const Topic& JointStates::topic() {
 }
 const Topic& EmergencyStop::topic() {
   return table()[kEmergencyStop];
+}
+const Topic& ToolReset::topic() {
+  return table()[kToolReset];
 }
 const Topic& TrueOdometry::topic() {
   return table()[kTrueOdometry];

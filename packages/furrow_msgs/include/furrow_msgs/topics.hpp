@@ -93,6 +93,11 @@ struct Plan {
   [[nodiscard]] static const Topic& topic();
 };
 
+struct PlannerHeartbeat {
+  using Message = furrow_msgs::msg::Heartbeat;
+  [[nodiscard]] static const Topic& topic();
+};
+
 struct AxisState {
   using Message = furrow_msgs::msg::AxisState;
   [[nodiscard]] static const Topic& topic();
@@ -110,6 +115,11 @@ struct JointStates {
 
 struct EmergencyStop {
   using Message = furrow_msgs::msg::EmergencyStop;
+  [[nodiscard]] static const Topic& topic();
+};
+
+struct ToolReset {
+  using Message = furrow_msgs::msg::ToolReset;
   [[nodiscard]] static const Topic& topic();
 };
 

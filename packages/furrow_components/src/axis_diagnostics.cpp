@@ -1,0 +1,45 @@
+#include "axis_diagnostics.hpp"
+
+#include "furrow_graph/health.hpp"
+#include "furrow_ledger/markup.hpp"
+
+namespace furrow::components {
+
+diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& component,
+                                                       const furrow_msgs::msg::AxisState& state,
+                                                       Time cause_found,
+                                                       const std::string& refusal) {
+  using ledger::fixed;
+  diagnostic_msgs::msg::DiagnosticArray array;
+  array.header().stamp(state.header().stamp());
+  auto& status = array.status().emplace_back();
+  status.name(component + ": " + state.axis());
+  status.hardware_id(state.axis());
+  const auto set = [&](graph::HealthLevel level, const std::string& message) {
+    status.level(static_cast<std::uint8_t>(level));
+    status.message(message);
+  };
+  if (!state.fault().empty()) {
+    set(graph::HealthLevel::kError,
+        state.fault() + " at " + fixed(cause_found.to_seconds(), 3) + " s");
+  } else if (state.mode() != "running") {
+    set(graph::HealthLevel::kWarn, refusal.empty() ? state.mode() : "drive: " + refusal);
+  } else {
+    set(graph::HealthLevel::kOk, "running");
+  }
+  const auto value = [&](const std::string& key, const std::string& text) {
+    auto& entry = status.values().emplace_back();
+    entry.key(key);
+    entry.value(text);
+  };
+  value("drive", state.state());
+  value("mode", state.mode());
+  value("position_m", fixed(state.position_m(), 4));
+  value("travel_m", fixed(state.travel_m(), 3));
+  value("openings", std::to_string(state.openings()));
+  value("open_s", fixed(state.open_s(), 3));
+  value("volume_ml", fixed(state.volume_ml(), 2));
+  return array;
+}
+
+}  // namespace furrow::components

@@ -1,0 +1,54 @@
+#include "axis_hardware.hpp"
+
+namespace furrow::components {
+namespace {
+
+class SimulatedElsewhere final : public actuation::ValveDriver {
+ public:
+  Status write(Time, bool) override { return {}; }
+};
+
+}  // namespace
+
+void AxisHardwareParameters::visit(ParameterVisitor& v) {
+  v.visit({.name = "driver",
+           .description = "simulated: a servo within the URDF's limits; cia402_modbus: a CiA 402 "
+                          "drive behind a Modbus TCP gateway (drive_*)",
+           .choices = {"simulated", "cia402_modbus"}},
+          driver);
+  v.visit({.name = "valve",
+           .description = "simulated: the robot's simulator sprays; modbus_coils: an output module "
+                          "(coil_*); gpio: a line of this computer (gpio_*)",
+           .choices = {"simulated", "modbus_coils", "gpio"}},
+          valve);
+  PrefixedVisitor simulated_visitor(v, "simulated_");
+  simulated.visit(simulated_visitor);
+  PrefixedVisitor drive_visitor(v, "drive_");
+  drive.visit(drive_visitor);
+  PrefixedVisitor coil_visitor(v, "coil_");
+  coil.visit(coil_visitor);
+  PrefixedVisitor gpio_visitor(v, "gpio_");
+  gpio.visit(gpio_visitor);
+}
+
+std::unique_ptr<actuation::AxisDriver> make_axis_driver(const AxisHardwareParameters& parameters,
+                                                        const actuation::MotionLimits& limits) {
+  if (parameters.driver == "cia402_modbus") {
+    return std::make_unique<actuation::cia402::ModbusAxisDriver>(limits, parameters.drive);
+  }
+  return std::make_unique<actuation::SimulatedAxisDriver>(limits, parameters.simulated);
+}
+
+std::unique_ptr<actuation::ValveDriver> make_valve(const AxisHardwareParameters& parameters) {
+  if (parameters.valve == "modbus_coils") {
+    return std::make_unique<actuation::ModbusCoilValve>(parameters.coil);
+  }
+  if (parameters.valve == "gpio") {
+    const bool low = parameters.gpio.active_low;
+    return std::make_unique<actuation::GpioValve>(actuation::open_gpio_line(parameters.gpio, low),
+                                                  low);
+  }
+  return std::make_unique<SimulatedElsewhere>();
+}
+
+}  // namespace furrow::components

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "furrow_actuation/gpio_valve.hpp"
+#include "furrow_actuation/modbus_axis_driver.hpp"
+#include "furrow_actuation/modbus_coil_valve.hpp"
+#include "furrow_actuation/simulated_axis_driver.hpp"
+
+namespace furrow::components {
+
+/// Which drive moves an axis and what its valve is wired to.
+struct AxisHardwareParameters {
+  std::string driver = "simulated";
+  std::string valve = "simulated";
+  actuation::SimulatedAxisParameters simulated{.start_ready = true};
+  actuation::cia402::ModbusAxisParameters drive;
+  actuation::ModbusCoilParameters coil;
+  actuation::GpioValveParameters gpio;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// Throws ConfigError.
+[[nodiscard]] std::unique_ptr<actuation::AxisDriver> make_axis_driver(
+    const AxisHardwareParameters& parameters, const actuation::MotionLimits& limits);
+/// Throws ConfigError. A simulated valve takes its level and does nothing: where it sprays, the
+/// robot's simulator works out from the driver's events.
+[[nodiscard]] std::unique_ptr<actuation::ValveDriver> make_valve(
+    const AxisHardwareParameters& parameters);
+
+}  // namespace furrow::components

@@ -1,0 +1,272 @@
+// The axis driver as a component, in simulated time: it comes into service, sprays, makes itself
+// safe and starts again.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_graph/runtime.hpp"
+#include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/diagnostic_msgs.h"
+#include "furrow_msgs/topics.hpp"
+
+namespace furrow::components {
+namespace {
+
+namespace topics = msgs::topics;
+using furrow_msgs::msg::AxisEvent;
+using furrow_msgs::msg::AxisState;
+
+constexpr double kSpeed_mps = 0.5;
+constexpr double kSpacing_m = 0.2;
+
+/// What goes on around the driver, and what it said.
+struct World {
+  double seconds = 6.0;
+  std::function<bool(double)> planner_alive = [](double) { return true; };
+  std::function<bool(double)> odometry_comes = [](double) { return true; };
+  std::function<bool(double)> emergency_stop = [](double) { return false; };
+  std::vector<double> resets_s;
+
+  std::vector<AxisEvent> events;
+  std::vector<AxisState> states;
+  std::vector<diagnostic_msgs::msg::DiagnosticStatus> diagnostics;
+  graph::Health health;
+
+  [[nodiscard]] std::vector<AxisEvent> events_named(const std::string& name) const {
+    std::vector<AxisEvent> list;
+    std::ranges::copy_if(events, std::back_inserter(list),
+                         [&](const AxisEvent& event) { return event.event() == name; });
+    return list;
+  }
+  [[nodiscard]] int sprays_between(double from_s, double to_s) const {
+    int count = 0;
+    for (const AxisEvent& event : events_named("sprayed")) {
+      const double at_s = graph::from_msg(event.opened()).to_seconds();
+      count += from_s <= at_s && at_s < to_s ? 1 : 0;
+    }
+    return count;
+  }
+};
+
+class Feeder final : public graph::Component {
+ public:
+  Feeder(graph::Context& context, World& world)
+      : world_(world),
+        plan_out_(context.output<topics::Plan>()),
+        heartbeat_out_(context.output<topics::PlannerHeartbeat>()),
+        odometry_out_(context.output<topics::RobotOdometry>()),
+        tracks_out_(context.output<topics::Tracks>()),
+        stop_out_(context.output<topics::EmergencyStop>()),
+        reset_out_(context.output<topics::ToolReset>()) {
+    context.every(Duration::milliseconds(10), [this, &context](Time now) {
+      step(now);
+      if (now.to_seconds() >= world_.seconds) context.request_stop("finished");
+    });
+    context.every(Duration::milliseconds(20), [this](Time now) {
+      if (world_.planner_alive(now.to_seconds())) {
+        heartbeat_out_.publish(furrow_msgs::msg::Heartbeat());
+      }
+    });
+    context.every(Duration::milliseconds(200), [this](Time now) { plan(now); });
+    context.input<topics::AxisEvent>(
+        [this](const auto& event) { world_.events.push_back(*event); });
+    context.input<topics::AxisState>(
+        [this](const auto& state) { world_.states.push_back(*state); });
+    context.input<topics::Diagnostics>([this](const auto& array) {
+      for (const auto& status : array->status()) world_.diagnostics.push_back(status);
+    });
+  }
+
+  static void describe(graph::Description& d) {
+    d.input<topics::AxisEvent>()
+        .input<topics::AxisState>()
+        .input<topics::Diagnostics>()
+        .output<topics::Plan>()
+        .output<topics::PlannerHeartbeat>()
+        .output<topics::RobotOdometry>()
+        .output<topics::Tracks>()
+        .output<topics::EmergencyStop>()
+        .output<topics::ToolReset>();
+  }
+
+ private:
+  void step(Time now) {
+    const double t_s = now.to_seconds();
+    if (world_.odometry_comes(t_s)) {
+      odometry_out_.publish(
+          to_msg(BaseOdometry{now, {kSpeed_mps * t_s, 0.0, 0.0}, kSpeed_mps, 0.0}, kFieldFrame));
+    }
+    if (world_.emergency_stop(t_s) != pressed_) {
+      pressed_ = !pressed_;
+      furrow_msgs::msg::EmergencyStop message;
+      message.active(pressed_);
+      stop_out_.publish(std::move(message));
+    }
+    for (const double reset_s : world_.resets_s) {
+      if (std::abs(t_s - reset_s) < 0.004) reset_out_.publish(furrow_msgs::msg::ToolReset());
+    }
+  }
+
+  void plan(Time now) {
+    if (!world_.planner_alive(now.to_seconds())) return;
+    furrow_msgs::msg::Plan plan;
+    plan.header(header(now, kFieldFrame));
+    auto& route = plan.routes().emplace_back();
+    route.axis("axis_1");
+    const auto first = static_cast<std::int64_t>(kSpeed_mps * now.to_seconds() / kSpacing_m);
+    for (std::int64_t i = first + 1; i < first + 12; ++i) {
+      auto& stop = route.stops().emplace_back();
+      stop.id(i);
+      const double y_m = i % 2 == 0 ? 0.1 : -0.1;
+      stop.aim(to_point(Eigen::Vector2d(kSpacing_m * static_cast<double>(i), y_m)));
+      stop.track_ids({i});
+    }
+    plan_out_.publish(std::move(plan));
+    furrow_msgs::msg::Tracks tracks;
+    tracks.header(header(now, kFieldFrame));
+    tracks_out_.publish(std::move(tracks));
+  }
+
+  World& world_;
+  graph::Output<topics::Plan> plan_out_;
+  graph::Output<topics::PlannerHeartbeat> heartbeat_out_;
+  graph::Output<topics::RobotOdometry> odometry_out_;
+  graph::Output<topics::Tracks> tracks_out_;
+  graph::Output<topics::EmergencyStop> stop_out_;
+  graph::Output<topics::ToolReset> reset_out_;
+  bool pressed_ = false;
+};
+
+void run(World& world, const std::map<std::string, ParameterValue>& parameters = {}) {
+  graph::Registry registry;
+  registry.load_library(FURROW_AXIS_DRIVER_LIBRARY);
+  graph::ComponentClass type{.name = "feeder"};
+  Feeder::describe(type.description);
+  type.make = [&](graph::Context& context) { return std::make_unique<Feeder>(context, world); };
+  registry.add(std::move(type));
+  graph::GraphSpec spec;
+  spec.components = {{.name = "driver",
+                      .group = "driver",
+                      .class_name = "axis_driver",
+                      .parameters = {{"tool_file", std::string(FURROW_TOOL_FILE), {}},
+                                     {"axis", std::string("axis_1"), {}}}},
+                     {.name = "feeder", .group = "feeder", .class_name = "feeder"}};
+  for (const auto& [name, value] : parameters) {
+    spec.components[0].parameters.push_back({name, value, {}});
+  }
+  graph::Runtime runtime(spec, registry, {.clock = graph::ClockMode::kLockstep, .threads = 1});
+  EXPECT_EQ(runtime.run().reason, "finished");
+  world.health = runtime.status()[0].health;
+}
+
+TEST(AxisDriverComponent, SpraysItsPlanAndCountsWhatItUses) {
+  World world;
+  run(world);
+  // 2.5 sprays a second, from when the first plan is there.
+  const int sprays = world.sprays_between(0.0, 6.0);
+  EXPECT_GE(sprays, 13);
+  const AxisState& last = world.states.back();
+  EXPECT_EQ(last.mode(), "running");
+  EXPECT_EQ(last.fault(), "");
+  EXPECT_GE(static_cast<int>(last.openings()), sprays);
+  EXPECT_NEAR(last.open_s(), 0.010 * sprays, 0.012);  // of 10 ms each
+  EXPECT_NEAR(last.volume_ml(), 5.0 * last.open_s(), 1e-9);
+  for (const AxisEvent& event : world.events_named("sprayed")) {
+    EXPECT_NEAR(event.landing().x(), event.aim().x(), 0.002);
+    EXPECT_NEAR(event.landing().y(), event.aim().y(), 0.002);
+    EXPECT_NEAR(event.volume_ml(), 0.05, 0.011);
+  }
+  EXPECT_EQ(world.health.level, graph::HealthLevel::kOk);
+}
+
+TEST(AxisDriverComponent, ADriveWithoutPowerIsEnabledAndHomedFirst) {
+  World world;
+  run(world, {{"simulated_start_ready", false}, {"simulated_start_position_m", 0.5}});
+  EXPECT_EQ(world.states.front().state(), "homing");
+  EXPECT_EQ(world.states.back().mode(), "running");
+  EXPECT_GT(world.sprays_between(3.0, 6.0), 5);
+}
+
+TEST(AxisDriverComponent, ADryRunMovesAndOpensNothing) {
+  World world;
+  run(world, {{"dry_run", true}});
+  EXPECT_TRUE(world.events_named("sprayed").empty());
+  EXPECT_GT(world.events_named("dry_run").size(), 10u);
+  EXPECT_EQ(world.states.back().openings(), 0u);
+  EXPECT_GT(world.states.back().travel_m(), 1.0);
+}
+
+TEST(AxisDriverComponent, AnEmergencyStopIsLatchedUntilItIsReset) {
+  World world;
+  world.emergency_stop = [](double t_s) { return t_s >= 2.0 && t_s < 3.0; };
+  world.resets_s = {2.5, 4.0};  // the first while it is still pressed
+  run(world);
+  const auto safe = world.events_named("made_safe");
+  ASSERT_FALSE(safe.empty());
+  EXPECT_EQ(safe[0].cause(), "emergency_stop");
+  EXPECT_NEAR(graph::from_msg(safe[0].closed()).to_seconds(), 2.0, 0.004);
+  EXPECT_GT(world.sprays_between(0.0, 2.0), 2);
+  EXPECT_EQ(world.sprays_between(2.005, 4.0), 0);
+  EXPECT_GT(world.sprays_between(4.0, 6.0), 3);
+  // What came due meanwhile is in the ledger as a fault.
+  EXPECT_GE(world.events_named("fault").size(), 3u);
+  EXPECT_EQ(world.health.level, graph::HealthLevel::kOk);
+}
+
+TEST(AxisDriverComponent, ASilentPlannerMakesItSafeAndItStaysSo) {
+  World world;
+  world.planner_alive = [](double t_s) { return t_s < 2.0 || t_s > 3.0; };
+  run(world);
+  const auto safe = world.events_named("made_safe");
+  ASSERT_EQ(safe.size(), 1u);
+  EXPECT_EQ(safe[0].cause(), "peer_lost");
+  EXPECT_NEAR(graph::from_msg(safe[0].closed()).to_seconds(), 1.98 + 0.07, 0.004);
+  EXPECT_EQ(world.sprays_between(2.1, 6.0), 0);
+  EXPECT_EQ(world.states.back().fault(), "peer_lost");
+  EXPECT_EQ(world.health.level, graph::HealthLevel::kError);
+  EXPECT_TRUE(world.health.message.starts_with("peer_lost at 2.0")) << world.health.message;
+  ASSERT_GE(world.diagnostics.size(), 5u);  // one a second
+  EXPECT_EQ(world.diagnostics[0].level(), 0);
+  EXPECT_EQ(world.diagnostics[0].message(), "running");
+  EXPECT_EQ(world.diagnostics.back().level(), 2);
+  EXPECT_EQ(world.diagnostics.back().name(), "driver: axis_1");
+  EXPECT_TRUE(world.diagnostics.back().message().starts_with("peer_lost at 2.05"));
+}
+
+TEST(AxisDriverComponent, OdometryThatStopsMakesItSafeUntilReset) {
+  World world;
+  world.odometry_comes = [](double t_s) { return t_s < 2.0 || t_s > 3.0; };
+  world.resets_s = {4.0};
+  run(world);
+  const auto safe = world.events_named("made_safe");
+  ASSERT_EQ(safe.size(), 1u);
+  EXPECT_EQ(safe[0].cause(), "odometry_stale");
+  EXPECT_GT(world.sprays_between(4.0, 6.0), 3);
+}
+
+TEST(AxisDriverComponent, AValveThatCannotBeReachedIsAFault) {
+  World world;
+  // Nobody listens at port 9 of the loopback.
+  run(world, {{"valve", std::string("modbus_coils")}, {"coil_port", std::int64_t{9}}});
+  ASSERT_FALSE(world.events_named("made_safe").empty());
+  EXPECT_EQ(world.events_named("made_safe")[0].cause(), "valve_fault");
+  EXPECT_TRUE(world.events_named("sprayed").empty());
+}
+
+TEST(AxisDriverComponent, ADriveThatCannotBeReachedIsWaitedFor) {
+  World world;
+  run(world, {{"driver", std::string("cia402_modbus")}, {"drive_port", std::int64_t{9}}});
+  EXPECT_TRUE(world.events_named("sprayed").empty());
+  EXPECT_EQ(world.states.back().mode(), "waiting");
+  EXPECT_EQ(world.states.back().state(), "fault");
+  EXPECT_EQ(world.health.level, graph::HealthLevel::kWarn);
+  EXPECT_EQ(world.health.message, "drive: no connection to the drive");
+}
+
+}  // namespace
+}  // namespace furrow::components
