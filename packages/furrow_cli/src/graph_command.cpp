@@ -2,7 +2,9 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "furrow_core/file.hpp"
 #include "furrow_graph/graph_check.hpp"
+#include "graph_picture.hpp"
 #include "graph_setup.hpp"
 #include "share.hpp"
 
@@ -13,6 +15,7 @@ struct GraphOptions {
   std::string graph = "weeding";
   std::string deploy;
   std::vector<std::string> settings;
+  std::string svg;
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -21,14 +24,27 @@ std::string joined(const std::vector<std::string>& names) {
   return text.empty() ? "-" : text;
 }
 
-void show(const GraphOptions& options) {
+int show(const GraphOptions& options) {
   graph::Registry registry = make_registry();
   const PreparedGraph prepared = prepare_graph(options.graph, options.settings);
   const auto connections = graph::check_graph(prepared.spec, registry);
+  const auto deployment = graph::load_deployment(
+      find_shipped(options.deploy.empty() ? "composed" : options.deploy, "deploy"));
+  const auto processes = graph::place_components(prepared.spec, deployment);
+  if (!options.svg.empty()) {
+    const Status written =
+        write_file_atomically(options.svg, graph_picture(prepared.spec, connections, processes));
+    if (!written.ok()) {
+      std::cerr << "furrow: " << written.error().message << '\n';
+      return 1;
+    }
+    std::cout << "picture: " << options.svg << '\n';
+    return 0;
+  }
   if (!options.deploy.empty()) {
-    const auto deployment = graph::load_deployment(find_shipped(options.deploy, "deploy"));
-    for (const auto& [process, names] : graph::place_components(prepared.spec, deployment)) {
-      std::cout << "process " << process << ": " << joined(names) << '\n';
+    for (const auto& process : processes) {
+      std::cout << "process " << process.name << (process.host.empty() ? "" : " on " + process.host)
+                << ": " << joined(process.components) << '\n';
     }
   }
   std::cout << prepared.spec.name << ": " << prepared.spec.components.size() << " components, "
@@ -38,6 +54,7 @@ void show(const GraphOptions& options) {
               << joined(connection.publishers) << "\n      to   " << joined(connection.readers)
               << '\n';
   }
+  return 0;
 }
 
 void check(const GraphOptions& options) {
@@ -61,7 +78,7 @@ void add_graph_options(CLI::App* command, GraphOptions& options) {
 
 }  // namespace
 
-void add_graph_command(CLI::App& app, int& /*exit_code*/) {
+void add_graph_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("graph", "Looks at a graph without running it.");
   command->require_subcommand(1);
   auto options = std::make_shared<GraphOptions>();
@@ -71,7 +88,8 @@ void add_graph_command(CLI::App& app, int& /*exit_code*/) {
   check_command->callback([options] { check(*options); });
   CLI::App* show_command = command->add_subcommand("show", "Lists who publishes and reads what.");
   add_graph_options(show_command, *options);
-  show_command->callback([options] { show(*options); });
+  show_command->add_option("--svg", options->svg, "draw it into this file instead");
+  show_command->callback([options, &exit_code] { exit_code = show(*options); });
   command->add_subcommand("topics", "Prints the table of topics (docs/topics.md).")->callback([] {
     std::cout << msgs::topics_markdown();
   });

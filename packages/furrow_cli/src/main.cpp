@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   furrow::cli::add_run_command(app, exit_code);
+  furrow::cli::add_up_command(app, exit_code);
   furrow::cli::add_graph_command(app, exit_code);
   furrow::cli::add_params_command(app, exit_code);
   furrow::cli::add_dataset_command(app, exit_code);

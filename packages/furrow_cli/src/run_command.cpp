@@ -1,92 +1,66 @@
+#include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
-#include <optional>
+#include <thread>
 
 #include "command.hpp"
 #include "console.hpp"
+#include "diagnostics_table.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "graph_setup.hpp"
 #include "run_observer.hpp"
+#include "run_options.hpp"
 #include "run_summary.hpp"
 #include "share.hpp"
 #include "signals.hpp"
+#include "wire_health.hpp"
 
 namespace furrow::cli {
 namespace {
 
-struct RunOptions {
-  std::string graph = "weeding";
-  std::string deploy = "composed";
+/// What concerns this process alone.
+struct ProcessOptions {
+  RunOptions run;
   std::string process;
-  std::vector<std::string> settings;
-  std::string field;
-  std::string ground;
-  std::optional<double> length_m;
-  std::uint64_t seed = 1;
-  std::string clock = "real";
-  int threads = 2;
   bool no_wire = false;
-  std::string out = "out/run";
 };
 
-// The short options are settings of the graph with a shorter name.
-std::vector<std::string> all_settings(const RunOptions& options) {
-  std::vector<std::string> settings;
-  if (!options.field.empty()) {
-    const auto path = std::filesystem::absolute(find_shipped(options.field, "fields"));
-    settings.push_back("common.field_file=" + path.string());
-  }
-  if (options.length_m) settings.push_back("common.length_m=" + number(*options.length_m, 6));
-  constexpr std::string_view kPhotos = "photos:";
-  if (options.ground.starts_with(kPhotos)) {
-    const auto folder = std::filesystem::absolute(options.ground.substr(kPhotos.size()));
-    settings.push_back("common.photos_folder=" + folder.string());
-  } else if (!options.ground.empty() && options.ground != "rendered") {
-    throw ConfigError("--ground: '" + options.ground + "' is neither rendered nor photos:DIR");
-  }
-  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
-  return settings;
-}
-
-std::string pick_process(const RunOptions& options, const graph::DeploymentSpec& deployment) {
-  if (options.process.empty() && deployment.processes.size() == 1) {
-    return deployment.processes.front().name;
-  }
+const graph::PlacedProcess& pick_process(const std::vector<graph::PlacedProcess>& placed,
+                                         const graph::DeploymentSpec& deployment,
+                                         const std::string& wanted) {
+  if (wanted.empty() && placed.size() == 1) return placed.front();
   std::string names;
-  for (const graph::ProcessSpec& process : deployment.processes) {
-    if (process.name == options.process) return process.name;
+  for (const graph::PlacedProcess& process : placed) {
+    if (process.name == wanted) return process;
     names += (names.empty() ? "" : ", ") + process.name;
   }
   throw ConfigError(deployment.where, "processes",
-                    options.process.empty()
-                        ? "name one with --process: " + names
-                        : "there is no process '" + options.process + "', only: " + names);
+                    wanted.empty()
+                        ? "run all with `furrow up`, or name one with --process: " + names
+                        : "there is no process '" + wanted + "', only: " + names);
 }
 
-std::unique_ptr<dds::DdsTransport> make_transport(const RunOptions& options,
+std::unique_ptr<dds::DdsTransport> make_transport(const ProcessOptions& options,
                                                   const graph::DeploymentSpec& deployment,
-                                                  const std::string& process) {
-  if (options.no_wire) return nullptr;
+                                                  const graph::PlacedProcess& process, bool alone) {
   dds::DdsParameters parameters;
-  parameters.process_name = process;
-  ParameterLoader::load(deployment.wire, parameters);
+  parameters.process_name = process.name;
+  ParameterLoader::load(graph::wire_of(deployment, process.host), parameters);
+  if (options.no_wire && !alone) {
+    throw ConfigError(deployment.where, "processes",
+                      "there are several, which cannot do with --no-wire");
+  }
+  if (options.no_wire) return nullptr;
   return std::make_unique<dds::DdsTransport>(parameters);
 }
 
 bool contains(const std::vector<std::string>& list, const std::string& entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
-}
-
-/// A folder that can be written to, before anything is run for it.
-void check_out_folder(const std::string& out) {
-  const std::filesystem::path path(out);
-  if (std::filesystem::exists(path) && !std::filesystem::is_directory(path)) {
-    throw ConfigError("--out: " + out + " is not a folder");
-  }
 }
 
 ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
@@ -95,11 +69,11 @@ ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
                                   double wall_s) {
   ledger::RunRecord record = components::from_msg(message, prepared.axes);
   record.info.simulated = !message.field().source().empty();
-  record.info.seed = static_cast<std::int64_t>(options.seed);
+  record.info.seed = options.seed;
   record.info.version = FURROW_VERSION;
   record.info.graph = prepared.spec.name;
   record.info.wall_s = wall_s;
-  const bool real = options.clock == "real";
+  const bool real = !options.lockstep();
   record.info.more = {{"clock", options.clock},
                       {"messages dropped", std::to_string(dropped_messages(components))}};
   record.tables = health_tables(components, real);
@@ -107,7 +81,7 @@ ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
 }
 
 int write_report(const ledger::RunRecord& record, const field::FieldModel& field,
-                 const RunOptions& options) {
+                 const RunOptions& options, std::uint64_t dropped) {
   const auto ledger = ledger::account(field, record);
   if (!ledger.ok()) {
     std::cerr << "furrow: the run cannot be accounted for: " << ledger.error().message << '\n';
@@ -120,90 +94,119 @@ int write_report(const ledger::RunRecord& record, const field::FieldModel& field
   }
   std::cout << '\n'
             << ledger->summary.field << " (" << ledger->summary.source << ")\n"
-            << outcome_text(ledger->summary)
+            << outcome_text(ledger->summary, dropped)
             << "\nreport: " << (std::filesystem::path(options.out) / "report.html").string()
             << '\n';
   return 0;
 }
 
-int run(const RunOptions& options) {
+bool has_scorer(const graph::GraphSpec& graph, const std::vector<std::string>& components) {
+  return std::ranges::any_of(graph.components, [&](const auto& component) {
+    return component.class_name == "scorer" && contains(components, component.name);
+  });
+}
+
+RunEnd end_of(const graph::GraphSpec& graph, const std::vector<graph::PlacedProcess>& placed,
+              const graph::PlacedProcess& mine, bool lockstep) {
+  if (has_scorer(graph, mine.components)) return RunEnd::kRecord;
+  const bool scored = std::ranges::any_of(
+      placed, [&](const auto& process) { return has_scorer(graph, process.components); });
+  // In lock-step all processes end in the same wave, with the one that has the record.
+  return scored && lockstep ? RunEnd::kNever : RunEnd::kStatus;
+}
+
+/// Waits, in real time, until the other processes are there, so that nothing of the start is lost.
+void wait_for_others(const graph::Runtime& runtime, const std::atomic<bool>& interrupted) {
+  constexpr std::chrono::seconds kPatience{10};
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!runtime.connected() && !interrupted) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      std::cerr << "furrow: starting although not all other processes are there\n";
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+int run(const ProcessOptions& process_options) {
+  const RunOptions& options = process_options.run;
   PreparedGraph prepared = prepare_graph(options.graph, all_settings(options));
-  const auto deployment = graph::load_deployment(find_shipped(options.deploy, "deploy"));
-  const std::string process = pick_process(options, deployment);
-  std::vector<std::string> mine = graph::place_components(prepared.spec, deployment).at(process);
+  const auto deployment = prepare_deployment(options);
+  const auto placed = graph::place_components(prepared.spec, deployment);
+  const graph::PlacedProcess& process = pick_process(placed, deployment, process_options.process);
   check_out_folder(options.out);
 
   ProgressBar bar("weeding");
-  const bool has_scorer = std::ranges::any_of(prepared.spec.components, [&](const auto& component) {
-    return component.class_name == "scorer" && contains(mine, component.name);
-  });
+  const RunEnd end = end_of(prepared.spec, placed, process, options.lockstep());
+  const bool several = placed.size() > 1;
+  const bool shows = !several || end == RunEnd::kRecord;
   RunObserver observer(
-      [&bar](const furrow_msgs::msg::RunStatus& status) {
+      [&bar, shows](const furrow_msgs::msg::RunStatus& status) {
+        if (!shows) return;
         bar.show(status.progress(),
                  number(status.distance_m(), 1) + " m, " + number(status.speed_mps(), 2) + " m/s");
       },
-      has_scorer);
+      end, several && end == RunEnd::kRecord && !options.lockstep());
   graph::Registry registry = make_registry();
   observer.add_to(prepared.spec, registry);
+  std::vector<std::string> mine = process.components;
   mine.emplace_back(RunObserver::component_name());
 
-  graph::Runtime* running = nullptr;
-  SignalWatch signals([&running] {
-    if (running != nullptr) running->request_stop("interrupted");
+  std::atomic<graph::Runtime*> running = nullptr;
+  std::atomic<bool> interrupted = false;
+  SignalWatch signals([&] {
+    interrupted = true;
+    if (graph::Runtime* runtime = running) runtime->request_stop("interrupted");
   });
-  const auto transport = make_transport(options, deployment, process);
+  const auto transport = make_transport(process_options, deployment, process, !several);
+  std::unique_ptr<WireHealth> wire_health;
+  std::function<graph::Health()> look;
+  if (transport != nullptr) {
+    wire_health = std::make_unique<WireHealth>(*transport);
+    look = [&wire_health] { return wire_health->look(); };
+  }
   graph::Runtime runtime(
       prepared.spec, registry,
-      {.clock = options.clock == "real" ? graph::ClockMode::kReal : graph::ClockMode::kLockstep,
+      {.clock = options.lockstep() ? graph::ClockMode::kLockstep : graph::ClockMode::kReal,
        .threads = options.threads,
-       .seed = options.seed,
+       .seed = static_cast<std::uint64_t>(options.seed),
        .components = mine,
-       .transport = transport.get()});
+       .transport = transport.get(),
+       .process = process.name,
+       .processes = placed,
+       .wire_health = look});
   running = &runtime;
+  if (interrupted) runtime.request_stop("interrupted");
+  if (!options.lockstep()) wait_for_others(runtime, interrupted);
   const auto start = std::chrono::steady_clock::now();
   const graph::RunResult result = runtime.run();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   bar.finish();
+  running = nullptr;
 
   if (result.failed || result.reason != "finished") {
     std::cerr << "furrow: the run ended early: " << result.reason << '\n';
     return 1;
   }
-  if (observer.record() == nullptr) return 0;
+  if (end != RunEnd::kRecord || observer.record() == nullptr) return 0;
   const auto field = components::from_msg(observer.record()->field());
-  return write_report(
-      complete_record(*observer.record(), prepared, options, runtime.status(), wall.count()), field,
-      options);
+  const auto components = runtime.status();
+  ledger::RunRecord record =
+      complete_record(*observer.record(), prepared, options, components, wall.count());
+  if (!observer.diagnostics().empty()) {
+    record.tables.push_back(diagnostics_table(observer.diagnostics(), process.name));
+  }
+  return write_report(record, field, options, dropped_messages(components));
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<RunOptions>();
+  auto options = std::make_shared<ProcessOptions>();
   CLI::App* command = app.add_subcommand("run", "Runs a graph and writes its report.");
-  command->add_option("--graph", options->graph, "graph file, or the name of a shipped one")
-      ->capture_default_str();
-  command->add_option("--deploy", options->deploy, "deployment file, or the name of a shipped one")
-      ->capture_default_str();
+  add_run_options(*command, options->run);
   command->add_option("--process", options->process, "which process of the deployment this one is");
-  command
-      ->add_option("--set", options->settings,
-                   "COMPONENT.KEY=VALUE over the files; common.KEY=VALUE for all components")
-      ->take_all();
-  command->add_option("--field", options->field,
-                      "a shipped preset, a preset file, or plants as CSV or GeoJSON");
-  command->add_option("--ground", options->ground, "rendered, or photos:DIR");
-  command->add_option("--length", options->length_m, "metres of row");
-  command->add_option("--seed", options->seed, "of everything that is random")
-      ->capture_default_str();
-  command->add_option("--clock", options->clock, "lockstep: as fast as it goes; real: real time")
-      ->check(CLI::IsMember({"lockstep", "real"}))
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "that call components")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
   command->add_flag("--no-wire", options->no_wire, "do not join the DDS domain");
-  command->add_option("--out", options->out, "folder of the report")->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

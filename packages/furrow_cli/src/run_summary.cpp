@@ -64,7 +64,7 @@ std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentS
   return {health};
 }
 
-std::string outcome_text(const ledger::Summary& s) {
+std::string outcome_text(const ledger::Summary& s, std::uint64_t dropped) {
   std::vector<std::vector<std::string>> rows = {
       {"weeds", std::to_string(s.weeds_total), ""},
       {"  treated accurately", std::to_string(s.treated_accurate),
@@ -84,6 +84,7 @@ std::string outcome_text(const ledger::Summary& s) {
   rows.push_back({"sprays", std::to_string(s.sprays), ""});
   rows.push_back({"placement error p50", millimetres(s.placement_error_p50_mm), ""});
   rows.push_back({"placement error p95", millimetres(s.placement_error_p95_mm), ""});
+  if (dropped > 0) rows.push_back({"messages dropped", std::to_string(dropped), ""});
   if (s.realtime_factor)
     rows.push_back({"speed of the run", number(*s.realtime_factor, 1) + " x real time", ""});
   return text_table(rows);

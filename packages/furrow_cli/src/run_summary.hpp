@@ -14,8 +14,8 @@ namespace furrow::cli {
 [[nodiscard]] std::vector<ledger::ReportTable> health_tables(
     std::span<const graph::ComponentStatus> components, bool with_times);
 
-/// The short table that a run ends with.
-[[nodiscard]] std::string outcome_text(const ledger::Summary& summary);
+/// The short table that a run ends with. `dropped` messages are told of when there are any.
+[[nodiscard]] std::string outcome_text(const ledger::Summary& summary, std::uint64_t dropped);
 
 /// Messages that full mailboxes dropped, over all components.
 [[nodiscard]] std::uint64_t dropped_messages(std::span<const graph::ComponentStatus> components);

@@ -55,7 +55,7 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   graph::Registry registry = make_registry();
   RunObserver observer(
       [&progress](const furrow_msgs::msg::RunStatus& status) { progress(status.progress()); },
-      true);
+      RunEnd::kRecord);
   observer.add_to(prepared.spec, registry);
   graph::Runtime runtime(prepared.spec, registry,
                          {.clock = graph::ClockMode::kLockstep,

@@ -9,6 +9,23 @@
 
 namespace furrow::graph {
 
+class WaveExchange;
+
+/// What a process knows of the others with which it runs in lock-step.
+struct SharedLockstep {
+  struct Topic {
+    const msgs::MessageType* type = nullptr;
+    std::vector<Route::Reader> readers;  ///< in this process
+    std::vector<bool> read_by;           ///< by process, this one included
+    bool read_elsewhere = false;
+  };
+  SharedLockstep();
+  ~SharedLockstep();
+  std::unique_ptr<WaveExchange> exchange;
+  std::vector<Topic> topics;                     ///< as the graph's connections
+  std::vector<std::uint32_t> component_of_node;  ///< index in the graph, by node of this process
+};
+
 /// Calls the nodes of a process until it is stopped.
 class Executor : public NodeHost {
  public:
@@ -16,6 +33,12 @@ class Executor : public NodeHost {
   virtual RunResult run(std::span<const std::unique_ptr<Node>> nodes) = 0;
   /// A message from outside the process, on any thread.
   virtual void deliver_from_wire(const Route::Reader& reader, MessagePtr message) = 0;
+  /// Before run(): called at every second of the clock, while no node's outcome depends on it.
+  virtual void every_second(std::function<void(Time)> callback) = 0;
+  /// From any thread: ends the run as soon as may be.
+  virtual void interrupt(std::string_view reason) { request_stop(reason, false); }
+  /// Before run(): makes this lock-step one of several processes.
+  virtual void share(std::unique_ptr<SharedLockstep> /*shared*/) {}
 };
 
 [[nodiscard]] std::unique_ptr<Executor> make_lockstep_executor(int threads);

@@ -30,7 +30,9 @@ void check_remaps(const ComponentSpec& component, const Description& description
       return std::ranges::any_of(ports, [&](const PortInfo& p) { return p.topic->name == port; });
     };
     if (!has(description.inputs()) && !has(description.outputs())) {
-      throw ConfigError(component.where, component.name + ".remap." + port,
+      const auto where = component.remaps_where.find(port);
+      throw ConfigError(where == component.remaps_where.end() ? component.where : where->second,
+                        component.name + ".remap." + port,
                         "class '" + component.class_name + "' has no such port");
     }
   }
@@ -150,7 +152,9 @@ std::vector<Connection> check_graph(const GraphSpec& graph, Registry& registry) 
       throw ConfigError(component.where, component.name, "stands twice");
     }
     if (!component.library.empty()) registry.load_library(component.library);
-    const ComponentClass& type = registry.find(component.class_name, component.where);
+    const SourceLocation& class_where =
+        component.class_where.file.empty() ? component.where : component.class_where;
+    const ComponentClass& type = registry.find(component.class_name, class_where);
     check_component_parameters(component, graph, type.description);
     check_remaps(component, type.description);
     for (const GivenParameter& parameter : graph.common) {

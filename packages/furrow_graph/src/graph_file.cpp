@@ -3,19 +3,11 @@
 #include <algorithm>
 
 #include "furrow_graph/parameter_file.hpp"
+#include "put_over.hpp"
 #include "yaml_source.hpp"
 
 namespace furrow::graph {
 namespace {
-
-void put_over(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
-  const auto it = std::ranges::find(parameters, parameter.name, &GivenParameter::name);
-  if (it == parameters.end()) {
-    parameters.push_back(std::move(parameter));
-  } else {
-    *it = std::move(parameter);
-  }
-}
 
 void check_name(const YamlSource& source, const YAML::Node& node, const std::string& name) {
   const bool plain =
@@ -27,13 +19,12 @@ void check_name(const YamlSource& source, const YAML::Node& node, const std::str
   }
 }
 
-std::map<std::string, std::string> read_remaps(const YamlSource& source, const YAML::Node& map) {
-  std::map<std::string, std::string> remaps;
+void read_remaps(const YamlSource& source, const YAML::Node& map, ComponentSpec& spec) {
   source.each(map, "remap",
-              [&](const std::string& key, const YAML::Node&, const YAML::Node& value) {
-                remaps[key] = source.text(value, key);
+              [&](const std::string& key, const YAML::Node& node, const YAML::Node& value) {
+                spec.remaps[key] = source.text(value, key);
+                spec.remaps_where[key] = source.where(node);
               });
-  return remaps;
 }
 
 bool read_thread(const YamlSource& source, const YAML::Node& value, const std::string& name) {
@@ -62,6 +53,7 @@ ComponentSpec read_component(const YamlSource& source, const std::string& name,
       map, name, [&](const std::string& key, const YAML::Node& node, const YAML::Node& value) {
         if (key == "class") {
           spec.class_name = source.text(value, key);
+          spec.class_where = source.where(node);
         } else if (key == "library") {
           spec.library = (source.folder() / source.text(value, key)).lexically_normal().string();
         } else if (key == "parameters_file") {
@@ -69,7 +61,7 @@ ComponentSpec read_component(const YamlSource& source, const std::string& name,
         } else if (key == "parameters") {
           over = source.parameters(value, key);
         } else if (key == "remap") {
-          spec.remaps = read_remaps(source, value);
+          read_remaps(source, value, spec);
         } else if (key == "for_each") {
           spec.for_each = source.text(value, key);
         } else if (key == "thread") {

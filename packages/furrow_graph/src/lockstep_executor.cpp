@@ -1,79 +1,12 @@
 #include <algorithm>
-#include <condition_variable>
 #include <mutex>
-#include <thread>
 
+#include "crew.hpp"
 #include "executor.hpp"
+#include "wave_exchange.hpp"
 
 namespace furrow::graph {
 namespace {
-
-/// Calls `work(i)` for every i of a range, on this thread and some others, and returns when all are
-/// done.
-class Crew {
- public:
-  explicit Crew(int threads) {
-    for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
-  }
-  ~Crew() {
-    {
-      const std::lock_guard lock(mutex_);
-      quit_ = true;
-    }
-    wake_.notify_all();
-    for (std::thread& helper : helpers_) helper.join();
-  }
-
-  void run(std::size_t count, const std::function<void(std::size_t)>& work) {
-    if (count == 1 || helpers_.empty()) {
-      for (std::size_t i = 0; i < count; ++i) work(i);
-      return;
-    }
-    {
-      const std::lock_guard lock(mutex_);
-      work_ = &work;
-      next_ = 0;
-      count_ = count;
-      left_ = count;
-    }
-    wake_.notify_all();
-    std::unique_lock lock(mutex_);
-    take(lock);
-    done_.wait(lock, [this] { return left_ == 0; });
-    work_ = nullptr;
-  }
-
- private:
-  void take(std::unique_lock<std::mutex>& lock) {
-    while (work_ != nullptr && next_ < count_) {
-      const std::size_t mine = next_++;
-      const auto* work = work_;
-      lock.unlock();
-      (*work)(mine);
-      lock.lock();
-      if (--left_ == 0) done_.notify_one();
-    }
-  }
-
-  void help() {
-    std::unique_lock lock(mutex_);
-    while (!quit_) {
-      take(lock);
-      if (quit_) break;
-      wake_.wait(lock, [this] { return quit_ || (work_ != nullptr && next_ < count_); });
-    }
-  }
-
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::condition_variable done_;
-  const std::function<void(std::size_t)>* work_ = nullptr;
-  std::size_t next_ = 0;
-  std::size_t count_ = 0;
-  std::size_t left_ = 0;
-  bool quit_ = false;
-  std::vector<std::thread> helpers_;
-};
 
 /// Steps simulated time from one due timer to the next. At an instant the nodes run in waves: those
 /// with mail or a due timer run side by side, then what they published is delivered in the order of
@@ -86,11 +19,22 @@ class LockstepExecutor final : public Executor {
 
   void publish(Node& from, Route& route, MessagePtr message) override {
     // Constructors run one after another, before the outboxes are known.
-    auto& outbox = running_ ? outbox_of(from) : constructed_;
-    outbox.push_back({&route, std::move(message)});
+    auto& outbox = running_ ? outboxes_[index_of(from)] : constructed_;
+    outbox.push_back({&from, &route, std::move(message)});
   }
 
   void request_stop(std::string_view reason, bool failed) override { stop_.set(reason, failed); }
+
+  void interrupt(std::string_view reason) override {
+    stop_.set(reason, false);
+    if (shared_ != nullptr) shared_->exchange->abort(std::string(reason));
+  }
+
+  void every_second(std::function<void(Time)> callback) override {
+    each_second_ = std::move(callback);
+  }
+
+  void share(std::unique_ptr<SharedLockstep> shared) override { shared_ = std::move(shared); }
 
   void deliver_from_wire(const Route::Reader& reader, MessagePtr message) override {
     const std::lock_guard lock(wire_mutex_);
@@ -101,10 +45,28 @@ class LockstepExecutor final : public Executor {
     nodes_ = nodes;
     outboxes_.resize(nodes.size());
     running_ = true;
-    deliver(constructed_);
     for (const auto& node : nodes) {
       for (Node::Timer& timer : node->timers()) timer.next = now_ + timer.period;
     }
+    return shared_ == nullptr ? run_alone() : run_shared();
+  }
+
+ private:
+  struct Published {
+    Node* from;
+    Route* route;
+    MessagePtr message;
+  };
+  /// A message on its way to the inputs of this process, with what its place in line follows from.
+  struct Delivery {
+    std::uint32_t component;
+    std::uint32_t topic;
+    MessagePtr message;
+  };
+  static constexpr Time kNever = Time::from_nanoseconds(INT64_MAX);
+
+  RunResult run_alone() {
+    deliver(constructed_);
     while (!stop_.requested()) {
       run_instant();
       if (stop_.requested()) break;
@@ -113,34 +75,147 @@ class LockstepExecutor final : public Executor {
         stop_.set("nothing is left to do", false);
         break;
       }
-      now_ = next;
+      advance_to(next);
     }
     return stop_.result(now_);
   }
 
- private:
-  struct Published {
-    Route* route;
-    MessagePtr message;
-  };
-  static constexpr Time kNever = Time::from_nanoseconds(INT64_MAX);
+  /// With other processes: every wave is exchanged before the next one runs, and all draw the same
+  /// conclusions from it.
+  RunResult run_shared() {
+    WaveExchange& exchange = *shared_->exchange;
+    std::vector<Time> next_timers(exchange.size(), kNever);
+    std::vector<bool> active(exchange.size(), true);
+    std::shared_ptr<Wave> mine = make_wave(constructed_);
+    for (std::uint64_t number = 0;; ++number) {
+      const auto waves = exchange.exchange(number, active, std::move(mine));
+      if (!waves.ok()) {
+        stop_.set(waves.error().message, true);
+        return stop_.result(now_);
+      }
+      if (!deliver_all(*waves)) {
+        stop_.set("a message from another process is malformed", true);
+        return stop_.result(now_);
+      }
+      for (std::size_t i = 0; i < waves->size(); ++i) {
+        const Wave* wave = (*waves)[i].get();
+        if (wave == nullptr) continue;
+        if (wave->stop) return {wave->reason, wave->failed, now_};
+        next_timers[i] = Time::from_nanoseconds(wave->next_timer_ns);
+      }
+      active = woken_by(*waves);
+      if (std::ranges::find(active, true) == active.end()) {
+        const Time next = std::ranges::min(next_timers);
+        if (next == kNever) return {"nothing is left to do", false, now_};
+        advance_to(next);
+        for (std::size_t i = 0; i < active.size(); ++i) active[i] = next_timers[i] <= now_;
+      }
+      const bool mine_runs = active[exchange.own()];
+      if ((number + 1) % WaveExchange::kAllTakePart == 0) active.assign(active.size(), true);
+      if (mine_runs) run_wave();
+      if (active[exchange.own()]) mine = make_wave(collect());
+    }
+  }
 
-  std::vector<Published>& outbox_of(const Node& node) {
+  /// The processes that have something to do within the instant.
+  [[nodiscard]] std::vector<bool> woken_by(const WaveExchange::Waves& waves) const {
+    std::vector<bool> woken(waves.size(), false);
+    for (const auto& wave : waves) {
+      if (wave == nullptr) continue;
+      for (const std::uint32_t topic : wave->topics) {
+        if (topic >= shared_->topics.size()) continue;
+        const std::vector<bool>& read_by = shared_->topics[topic].read_by;
+        for (std::size_t i = 0; i < woken.size(); ++i) woken[i] = woken[i] || read_by[i];
+      }
+    }
+    return woken;
+  }
+
+  [[nodiscard]] std::vector<Published> collect() {
+    std::vector<Published> published;
+    for (std::vector<Published>& outbox : outboxes_) {
+      std::ranges::move(outbox, std::back_inserter(published));
+      outbox.clear();
+    }
+    return published;
+  }
+
+  /// This process's part of a wave. Its own messages are kept for deliver_all().
+  [[nodiscard]] std::shared_ptr<Wave> make_wave(std::vector<Published> published) {
+    auto wave = std::make_shared<Wave>();
+    wave->next_timer_ns = next_timer().count_ns();
+    if (stop_.requested()) {
+      const RunResult result = stop_.result(now_);
+      wave->stop = true;
+      wave->reason = result.reason;
+      wave->failed = result.failed;
+    }
+    own_.clear();
+    for (Published& entry : published) {
+      const std::uint32_t index = entry.route->topic_index;
+      const SharedLockstep::Topic& topic = shared_->topics[index];
+      const std::uint32_t component = shared_->component_of_node[index_of(*entry.from)];
+      write_to_wire(*entry.route, entry.message);
+      if (std::ranges::find(topic.read_by, true) != topic.read_by.end()) {
+        wave->topics.push_back(index);
+      }
+      if (topic.read_elsewhere) {
+        WaveMessage& out = wave->messages.emplace_back(WaveMessage{index, component, {}});
+        out.cdr.resize(topic.type->serialized_size(entry.message.get()));
+        if (!topic.type->serialize(entry.message.get(), out.cdr).ok()) out.cdr.clear();
+      }
+      own_.push_back({component, index, std::move(entry.message)});
+    }
+    std::ranges::sort(wave->topics);
+    const auto rest = std::ranges::unique(wave->topics);
+    wave->topics.erase(rest.begin(), rest.end());
+    return wave;
+  }
+
+  /// Hands all that was published in a wave to the inputs of this process, in the order of the
+  /// graph's components; false when something cannot be read.
+  [[nodiscard]] bool deliver_all(const WaveExchange::Waves& waves) {
+    std::vector<Delivery> deliveries = std::exchange(own_, {});
+    for (std::size_t i = 0; i < waves.size(); ++i) {
+      if (i == shared_->exchange->own() || waves[i] == nullptr) continue;
+      for (const WaveMessage& message : waves[i]->messages) {
+        if (message.topic >= shared_->topics.size()) return false;
+        const SharedLockstep::Topic& topic = shared_->topics[message.topic];
+        if (topic.readers.empty()) continue;
+        std::shared_ptr<void> copy = topic.type->create();
+        if (!topic.type->deserialize(message.cdr, copy.get()).ok()) return false;
+        deliveries.push_back({message.component, message.topic, std::move(copy)});
+      }
+    }
+    std::ranges::stable_sort(deliveries, {}, &Delivery::component);
+    for (const Delivery& delivery : deliveries) {
+      for (const Route::Reader& reader : shared_->topics[delivery.topic].readers) {
+        reader.node->push(reader.input, delivery.message);
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::size_t index_of(const Node& node) const {
     const auto it = std::ranges::find(nodes_, &node, &std::unique_ptr<Node>::get);
-    return outboxes_[static_cast<std::size_t>(it - nodes_.begin())];
+    return static_cast<std::size_t>(it - nodes_.begin());
   }
 
   void run_instant() {
-    while (!stop_.requested()) {
-      take_from_wire();
-      ready_.clear();
-      for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        if (nodes_[i]->has_messages() || timer_due(*nodes_[i])) ready_.push_back(i);
-      }
-      if (ready_.empty()) return;
-      crew_.run(ready_.size(), [this](std::size_t k) { run_node(*nodes_[ready_[k]]); });
+    while (!stop_.requested() && run_wave()) {
       for (const std::size_t i : ready_) deliver(outboxes_[i]);
     }
+  }
+
+  /// False when no node has anything to do.
+  bool run_wave() {
+    take_from_wire();
+    ready_.clear();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (nodes_[i]->has_messages() || timer_due(*nodes_[i])) ready_.push_back(i);
+    }
+    crew_.run(ready_.size(), [this](std::size_t k) { run_node(*nodes_[ready_[k]]); });
+    return !ready_.empty();
   }
 
   [[nodiscard]] bool timer_due(Node& node) const {
@@ -174,6 +249,14 @@ class LockstepExecutor final : public Executor {
     from_wire_.clear();
   }
 
+  // Between waves no node runs: what is seen of them is the same on any number of threads.
+  void advance_to(Time next) {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    const bool crossed = next.count_ns() / kSecond_ns > now_.count_ns() / kSecond_ns;
+    now_ = next;
+    if (crossed && each_second_) each_second_(now_);
+  }
+
   [[nodiscard]] Time next_timer() const {
     Time next = kNever;
     for (const auto& node : nodes_) {
@@ -192,9 +275,15 @@ class LockstepExecutor final : public Executor {
   std::vector<std::size_t> ready_;
   std::mutex wire_mutex_;
   std::vector<std::pair<Route::Reader, MessagePtr>> from_wire_;
+  std::function<void(Time)> each_second_;
+  std::unique_ptr<SharedLockstep> shared_;
+  std::vector<Delivery> own_;
 };
 
 }  // namespace
+
+SharedLockstep::SharedLockstep() = default;
+SharedLockstep::~SharedLockstep() = default;
 
 std::unique_ptr<Executor> make_lockstep_executor(int threads) {
   return std::make_unique<LockstepExecutor>(threads);

@@ -29,6 +29,7 @@ struct Route {
   };
   std::vector<Reader> readers;
   std::unique_ptr<WireWriter> wire;
+  std::uint32_t topic_index = 0;  ///< among the graph's connections
 };
 
 /// What the executor offers to its nodes.

@@ -43,8 +43,13 @@ class RealtimeExecutor final : public Executor {
     if (running_) schedule(*reader.node);
   }
 
+  void every_second(std::function<void(Time)> callback) override {
+    each_second_ = std::move(callback);
+  }
+
   RunResult run(std::span<const std::unique_ptr<Node>> nodes) override {
     prepare(nodes);
+    if (each_second_) timer_queue_.push({now() + kSecond, nullptr, 0});
     running_ = true;
     for (auto& [route, message] : constructed_) deliver(*route, message);
     constructed_.clear();
@@ -62,6 +67,8 @@ class RealtimeExecutor final : public Executor {
   }
 
  private:
+  static constexpr Duration kSecond = Duration::milliseconds(1000);
+
   struct Strand {
     bool queued = false;
     bool again = false;  // something came while it ran
@@ -71,7 +78,7 @@ class RealtimeExecutor final : public Executor {
   };
   struct TimerEntry {
     Time due;
-    Node* node;
+    Node* node;  ///< null: the second
     std::size_t timer;
     bool operator>(const TimerEntry& other) const { return due > other.due; }
   };
@@ -165,6 +172,13 @@ class RealtimeExecutor final : public Executor {
       const auto due = clock_.steady(entry.due);
       if (wake_timers_.wait_until(lock, due, [this] { return stop_.requested(); })) return;
       timer_queue_.pop();
+      if (entry.node == nullptr) {
+        timer_queue_.push({entry.due + kSecond, nullptr, 0});
+        lock.unlock();
+        each_second_(now());
+        lock.lock();
+        continue;
+      }
       Strand& strand = strands_.at(entry.node);
       if (strand.timer_pending[entry.timer]) {
         entry.node->count_missed_timer();
@@ -181,6 +195,7 @@ class RealtimeExecutor final : public Executor {
   const int threads_;
   const RealtimeClock clock_;
   StopRequest stop_;
+  std::function<void(Time)> each_second_;
   std::atomic<bool> running_ = false;
   std::vector<std::pair<Route*, MessagePtr>> constructed_;
   std::unordered_map<Node*, std::unique_ptr<DedicatedThread>> dedicated_;  // fixed while running

@@ -4,26 +4,59 @@
 #include <map>
 #include <set>
 
+#include "diagnostics.hpp"
 #include "executor.hpp"
 #include "furrow_graph/graph_check.hpp"
+#include "wave_exchange.hpp"
 
 namespace furrow::graph {
+
+namespace {
+
+/// In simulated time the wall clock says nothing of how often messages come.
+msgs::Qos wire_qos(msgs::Qos qos, ClockMode clock) {
+  if (clock == ClockMode::kReal) return qos;
+  qos.deadline = Duration();
+  qos.liveliness_lease = Duration();
+  return qos;
+}
+
+}  // namespace
 
 struct Runtime::Impl {
   std::vector<Connection> connections;
   std::unique_ptr<Executor> executor;
   std::map<std::string, std::unique_ptr<Route>> routes;
   std::vector<std::unique_ptr<Node>> nodes;
-  std::vector<std::unique_ptr<WireReader>> wire_readers;
+  struct Incoming {
+    std::unique_ptr<WireReader> reader;
+    int writers = 0;  ///< as many as there are other processes that publish it
+  };
+  std::vector<Incoming> incoming;
+  std::vector<const Route*> outgoing;  ///< those that other processes of the deployment read
+  std::map<std::string, std::string> process_of;
+  std::unique_ptr<WireWriter> diagnostics_writer;
+  std::vector<Route::Reader> diagnostics_readers;
 
   ~Impl() {
     // Readers first: nothing may arrive for a node that is gone.
-    wire_readers.clear();
+    incoming.clear();
     for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) (*it)->destroy_component();
   }
 
   [[nodiscard]] bool is_local(const std::string& name) const {
     return std::ranges::any_of(nodes, [&](const auto& node) { return node->name() == name; });
+  }
+
+  /// The other processes of the deployment that have one of these components.
+  [[nodiscard]] std::set<std::string> elsewhere(const std::vector<std::string>& components,
+                                                const std::string& own) const {
+    std::set<std::string> processes;
+    for (const std::string& component : components) {
+      const auto it = process_of.find(component);
+      if (it != process_of.end() && it->second != own) processes.insert(it->second);
+    }
+    return processes;
   }
 
   void make_nodes(const GraphSpec& graph, Registry& registry, const RuntimeOptions& options) {
@@ -41,22 +74,29 @@ struct Runtime::Impl {
     }
   }
 
-  void make_routes(Transport* transport) {
-    for (const Connection& connection : connections) {
+  void make_routes(const RuntimeOptions& options) {
+    Transport* transport = options.transport;
+    for (std::size_t i = 0; i < connections.size(); ++i) {
+      const Connection& connection = connections[i];
       const bool publishes =
           std::ranges::any_of(connection.publishers, [&](const auto& p) { return is_local(p); });
       if (!publishes) continue;
       auto route = std::make_unique<Route>();
       route->topic = connection.topic;
       route->qos = connection.qos;
+      route->topic_index = static_cast<std::uint32_t>(i);
       if (transport != nullptr) {
-        route->wire = transport->make_writer(connection.topic, *connection.type, connection.qos);
+        route->wire = transport->make_writer(connection.topic, *connection.type,
+                                             wire_qos(connection.qos, options.clock));
+        if (!elsewhere(connection.readers, options.process).empty())
+          outgoing.push_back(route.get());
       }
       routes.emplace(connection.topic, std::move(route));
     }
   }
 
-  void connect(Transport* transport) {
+  void connect(const RuntimeOptions& options, bool shared) {
+    Transport* transport = options.transport;
     for (const Connection& connection : connections) {
       std::vector<Route::Reader> readers;
       for (const auto& node : nodes) {
@@ -71,15 +111,126 @@ struct Runtime::Impl {
       const bool all_local =
           !connection.publishers.empty() &&
           std::ranges::all_of(connection.publishers, [&](const auto& p) { return is_local(p); });
-      if (transport == nullptr || all_local) continue;
-      wire_readers.push_back(transport->make_reader(
-          connection.topic, *connection.type, connection.qos, [this, readers](MessagePtr message) {
-            for (const Route::Reader& reader : readers)
-              executor->deliver_from_wire(reader, message);
-          }));
+      // In a shared lock-step the waves carry what the graph itself publishes.
+      if (transport == nullptr || all_local || (shared && !connection.publishers.empty())) continue;
+      auto reader = transport->make_reader(connection.topic, *connection.type, connection.qos,
+                                           [this, readers](MessagePtr message) {
+                                             for (const Route::Reader& to : readers)
+                                               executor->deliver_from_wire(to, message);
+                                           });
+      incoming.push_back(
+          {std::move(reader),
+           static_cast<int>(elsewhere(connection.publishers, options.process).size())});
     }
   }
+
+  [[nodiscard]] std::vector<ComponentStatus> status() const {
+    std::vector<ComponentStatus> list;
+    for (const auto& node : nodes) {
+      if (!node->spec().everywhere) list.push_back(node->status());
+    }
+    return list;
+  }
+
+  void diagnose(const RuntimeOptions& options) {
+    const msgs::Topic& topic = msgs::topics::Diagnostics::topic();
+    if (options.transport != nullptr) {
+      diagnostics_writer =
+          options.transport->make_writer(std::string(topic.name), *topic.type, topic.qos);
+    }
+    for (const auto& node : nodes) {
+      if (const auto input = node->input_of(std::string(topic.name))) {
+        diagnostics_readers.push_back({node.get(), *input});
+      }
+    }
+    if (diagnostics_writer == nullptr && diagnostics_readers.empty()) return;
+    const bool real = options.clock == ClockMode::kReal;
+    executor->every_second([this, process = options.process, wire_health = options.wire_health,
+                            real](Time now) {
+      const bool outside = diagnostics_writer != nullptr && diagnostics_writer->has_readers();
+      if (!outside && diagnostics_readers.empty()) return;
+      const Health wire = wire_health && real ? wire_health() : Health();
+      const auto message = std::make_shared<const diagnostic_msgs::msg::DiagnosticArray>(
+          make_diagnostics(now, process, status(), wire_health && real ? &wire : nullptr, real));
+      for (const Route::Reader& reader : diagnostics_readers) {
+        executor->deliver_from_wire(reader, message);
+      }
+      if (outside) diagnostics_writer->write(message);
+    });
+  }
+
+  [[nodiscard]] std::unique_ptr<SharedLockstep> make_shared_lockstep(const GraphSpec& graph,
+                                                                     const RuntimeOptions& options);
 };
+
+namespace {
+
+/// FNV-1a over what must be the same in all processes of a lock-step. Paths may differ by host.
+std::uint64_t digest_of(const GraphSpec& graph, const std::vector<Connection>& connections,
+                        const RuntimeOptions& options) {
+  std::string text = std::to_string(options.seed) + "\n";
+  for (const ComponentSpec& component : graph.components) {
+    text += component.name + " " + component.class_name + "\n";
+    for (const GivenParameter& parameter : component.parameters) {
+      if (parameter.name.ends_with("_file") || parameter.name.ends_with("_folder")) continue;
+      text += parameter.name + "=" + to_text(parameter.value) + "\n";
+    }
+  }
+  for (const GivenParameter& parameter : graph.common) {
+    if (parameter.name.ends_with("_file") || parameter.name.ends_with("_folder")) continue;
+    text += parameter.name + "=" + to_text(parameter.value) + "\n";
+  }
+  for (const Connection& connection : connections) text += connection.topic + "\n";
+  for (const PlacedProcess& process : options.processes) {
+    text += process.name + ":";
+    for (const std::string& component : process.components) text += " " + component;
+    text += "\n";
+  }
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return hash;
+}
+
+}  // namespace
+
+std::unique_ptr<SharedLockstep> Runtime::Impl::make_shared_lockstep(const GraphSpec& graph,
+                                                                    const RuntimeOptions& options) {
+  auto shared = std::make_unique<SharedLockstep>();
+  std::vector<std::string> processes;
+  for (const PlacedProcess& process : options.processes) processes.push_back(process.name);
+  for (const auto& node : nodes) {
+    const auto it = std::ranges::find(graph.components, node->name(), &ComponentSpec::name);
+    shared->component_of_node.push_back(static_cast<std::uint32_t>(it - graph.components.begin()));
+  }
+  std::set<std::string> everywhere;
+  for (const ComponentSpec& component : graph.components) {
+    if (component.everywhere) everywhere.insert(component.name);
+  }
+  for (const Connection& connection : connections) {
+    SharedLockstep::Topic topic;
+    topic.type = connection.type;
+    for (const auto& node : nodes) {
+      if (const auto input = node->input_of(connection.topic)) {
+        topic.readers.push_back({node.get(), *input});
+      }
+    }
+    topic.read_by.assign(processes.size(), false);
+    for (const std::string& reader : connection.readers) {
+      if (everywhere.contains(reader)) topic.read_by.assign(processes.size(), true);
+      const auto process = process_of.find(reader);
+      if (process == process_of.end()) continue;
+      const auto it = std::ranges::find(processes, process->second);
+      topic.read_by[static_cast<std::size_t>(it - processes.begin())] = true;
+    }
+    for (std::size_t i = 0; i < processes.size(); ++i) {
+      if (topic.read_by[i] && processes[i] != options.process) topic.read_elsewhere = true;
+    }
+    shared->topics.push_back(std::move(topic));
+  }
+  shared->exchange = std::make_unique<WaveExchange>(*options.transport, processes, options.process,
+                                                    digest_of(graph, connections, options));
+  return shared;
+}
 
 Runtime::Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOptions& options)
     : impl_(std::make_unique<Impl>()) {
@@ -87,13 +238,24 @@ Runtime::Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOption
   impl_->connections = check_graph(graph, registry);
   impl_->executor = options.clock == ClockMode::kLockstep ? make_lockstep_executor(options.threads)
                                                           : make_realtime_executor(options.threads);
+  for (const PlacedProcess& process : options.processes) {
+    for (const std::string& component : process.components) {
+      impl_->process_of[component] = process.name;
+    }
+  }
   impl_->make_nodes(graph, registry, options);
-  impl_->make_routes(options.transport);
+  impl_->make_routes(options);
   for (const auto& node : impl_->nodes) {
     node->construct(
         [this](const std::string& topic) -> Route& { return *impl_->routes.at(topic); });
   }
-  impl_->connect(options.transport);
+  const bool shared = options.clock == ClockMode::kLockstep && options.processes.size() > 1;
+  impl_->connect(options, shared);
+  impl_->diagnose(options);
+  if (shared) {
+    if (options.transport == nullptr) throw ConfigError("several processes need a transport");
+    impl_->executor->share(impl_->make_shared_lockstep(graph, options));
+  }
 }
 
 Runtime::~Runtime() = default;
@@ -103,13 +265,18 @@ RunResult Runtime::run() {
 }
 
 void Runtime::request_stop(std::string_view reason) {
-  impl_->executor->request_stop(reason, false);
+  impl_->executor->interrupt(reason);
 }
 
 std::vector<ComponentStatus> Runtime::status() const {
-  std::vector<ComponentStatus> list;
-  for (const auto& node : impl_->nodes) list.push_back(node->status());
-  return list;
+  return impl_->status();
+}
+
+bool Runtime::connected() const {
+  return std::ranges::all_of(impl_->incoming,
+                             [](const auto& in) { return in.reader->writers() >= in.writers; }) &&
+         std::ranges::all_of(impl_->outgoing,
+                             [](const Route* route) { return route->wire->has_readers(); });
 }
 
 }  // namespace furrow::graph

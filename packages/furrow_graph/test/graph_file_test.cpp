@@ -115,9 +115,11 @@ TEST_F(GraphFile, DeploymentPlacesEveryComponentOnce) {
   const auto place = [&](const std::string& text) {
     return place_components(graph, load_deployment(write(folder_ / "d.yaml", text)));
   };
-  EXPECT_EQ(place("processes: {all: \"*\"}\n").at("all").size(), 3u);
-  const auto two = place("processes:\n  one: [a, c]\n  two: {host: h, components: [b]}\n");
-  EXPECT_EQ(two.at("one"), (std::vector<std::string>{"a", "c"}));
+  EXPECT_EQ(place("processes: {all: \"*\"}\n").at(0).components.size(), 3u);
+  const auto two = place("processes:\n  one: [c, a]\n  two: {host: h, components: [b]}\n");
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[0].components, (std::vector<std::string>{"a", "c"}));
+  EXPECT_EQ(two[1].host, "h");
 
   const auto error = [&](const std::string& text) {
     return error_of(folder_, [&] { (void)place(text); });
@@ -129,7 +131,68 @@ TEST_F(GraphFile, DeploymentPlacesEveryComponentOnce) {
   EXPECT_EQ(error("processes:\n  one: [z]\n"), "d.yaml:2: one: the graph has no component 'z'");
   EXPECT_EQ(error("deployment: d\n"), "d.yaml:1: processes: is missing or empty");
   EXPECT_EQ(error("process: d\n"),
-            "d.yaml:1: process: unknown key; known: deployment, processes, wire");
+            "d.yaml:1: process: unknown key; known: deployment, hosts, processes, wire");
+  EXPECT_EQ(error("processes:\n  one: {components: [a], each: maybe}\n"),
+            "d.yaml:2: one.each: is neither true nor false");
+}
+
+TEST_F(GraphFile, TheRestMayHaveAProcessEach) {
+  const GraphSpec graph = load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
+  const auto place = [&](const std::string& text) {
+    return place_components(graph, load_deployment(write(folder_ / "d.yaml", text)));
+  };
+  const auto placed = place(
+      "processes:\n  others: {components: \"*\", each: true}\n"
+      "  mine: {components: [b, \"z?\"], restart: false}\n  nobody: [\"y?\"]\n");
+  ASSERT_EQ(placed.size(), 3u);
+  EXPECT_EQ(placed[0].name, "a");
+  EXPECT_EQ(placed[1].name, "c");
+  EXPECT_TRUE(placed[1].restart);
+  EXPECT_EQ(placed[2].name, "mine");
+  EXPECT_EQ(placed[2].components, std::vector<std::string>{"b"});
+  EXPECT_FALSE(placed[2].restart);
+  EXPECT_EQ(
+      error_of(folder_,
+               [&] {
+                 (void)place("processes:\n  b: [a]\n  others: {components: \"*\", each: true}\n");
+               }),
+      "d.yaml:1: processes: there are two processes 'b'");
+}
+
+TEST_F(GraphFile, AddressesOfTheHostsBecomeParametersOfTheWire) {
+  const std::string text =
+      "hosts: {one: 10.0.0.1, two: 10.0.0.2, three: 10.0.0.3}\n"
+      "processes: {p: {host: two, components: \"*\"}}\n";
+  const auto load_with = [&](const std::vector<std::string>& wire) {
+    DeploymentSpec deployment = load_deployment(write(folder_ / "d.yaml", text));
+    apply_addresses(deployment, {"three=10.0.0.9"});
+    apply_wire_settings(deployment, wire);
+    std::map<std::string, std::string> values;
+    for (const GivenParameter& parameter : wire_of(deployment, "two")) {
+      values[parameter.name] = to_text(parameter.value);
+    }
+    return values;
+  };
+  using Values = std::map<std::string, std::string>;
+  EXPECT_EQ(load_with({}), (Values{{"interfaces", "[10.0.0.2]"}}));
+  EXPECT_EQ(load_with({"discovery=static_peers"}), (Values{{"interfaces", "[10.0.0.2]"},
+                                                           {"discovery", "static_peers"},
+                                                           {"peers", "[10.0.0.1, 10.0.0.9]"}}));
+  EXPECT_EQ(load_with({"discovery=discovery_server", "interfaces=[10.1.1.1]"}),
+            (Values{{"interfaces", "[10.1.1.1]"},
+                    {"discovery", "discovery_server"},
+                    {"peers", "[10.0.0.1]"}}));
+  DeploymentSpec deployment = load_deployment(write(folder_ / "d.yaml", text));
+  EXPECT_EQ(error_of(folder_, [&] { apply_addresses(deployment, {"four=10.0.0.4"}); }),
+            "--address four=10.0.0.4: is not HOST=ADDRESS with a host of the deployment");
+  EXPECT_EQ(error_of(folder_, [&] { apply_wire_settings(deployment, {"domain_id"}); }),
+            "--wire domain_id: is not KEY=VALUE");
+  EXPECT_EQ(error_of(folder_,
+                     [&] {
+                       (void)load_deployment(write(
+                           folder_ / "d.yaml", "hosts: {h: 10.0.0.1}\nprocesses: {p: \"*\"}\n"));
+                     }),
+            "d.yaml:2: p.host: '' is not among the hosts");
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ struct ComponentSpec {
   bool dedicated_thread = false;              ///< in real time
   int priority = 0;  ///< of the dedicated thread under SCHED_FIFO, 1 to 99; 0: as any other thread
   SourceLocation where;
+  SourceLocation class_where = {};
+  std::map<std::string, SourceLocation> remaps_where = {};  ///< by port
+  /// Lives in every process of a deployment, for the process's own purposes; publishes to nobody
+  /// in the graph.
+  bool everywhere = false;
 };
 
 /// The components and their wiring, named once; where they run is said by a deployment.
@@ -66,30 +71,60 @@ void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings);
 
 /// Which component lives in which process on which host.
 ///
-///   deployment: composed
+///   deployment: three_hosts
+///   hosts: {vision: 192.168.10.1, tool: 192.168.10.2}
 ///   processes:
-///     furrow: "*"
-///     vision: {host: camera_pc, components: [camera, perception]}
+///     vision: {host: vision, components: [camera, "perception?"]}   # "?": if the graph has it
+///     robot: {host: tool, components: [robot], restart: false}
+///     others: {host: tool, components: "*", each: true}
 ///   wire: {domain_id: 7}        # parameters of the transport
 struct ProcessSpec {
   std::string name;
   std::string host;
-  std::vector<std::string> components;  ///< names or groups; "*" alone: all
+  std::vector<std::string> components;  ///< names or groups; "*": all that no other process names
+  bool each = false;                    ///< a process for each of the components, named as it
+  bool restart = true;                  ///< false: the run cannot go on without it
   SourceLocation where;
+};
+
+struct HostSpec {
+  std::string name;
+  std::string address;
 };
 
 struct DeploymentSpec {
   std::string name;
   SourceLocation where;
+  std::vector<HostSpec> hosts;  ///< empty: one host
   std::vector<ProcessSpec> processes;
   std::vector<GivenParameter> wire;
 };
 
 [[nodiscard]] DeploymentSpec load_deployment(const std::filesystem::path& path);
 
-/// The components of each process, by process name. Throws ConfigError when a component is in no
-/// process or in two, or a process names one that the graph does not have.
-[[nodiscard]] std::map<std::string, std::vector<std::string>> place_components(
-    const GraphSpec& graph, const DeploymentSpec& deployment);
+/// Puts "HOST=ADDRESS" over the addresses of the file. Throws ConfigError.
+void apply_addresses(DeploymentSpec& deployment, const std::vector<std::string>& addresses);
+/// Puts "KEY=VALUE" over the parameters of the transport. Throws ConfigError.
+void apply_wire_settings(DeploymentSpec& deployment, const std::vector<std::string>& settings);
+
+/// The transport's parameters on a host. Where the deployment has hosts, what is not given follows
+/// from their addresses: `interfaces` is the host's own; `peers` are all others with the discovery
+/// "static_peers", and the first host with "discovery_server".
+[[nodiscard]] std::vector<GivenParameter> wire_of(const DeploymentSpec& deployment,
+                                                  const std::string& host);
+
+/// A process with its components, in the order of the graph.
+struct PlacedProcess {
+  std::string name;
+  std::string host;
+  std::vector<std::string> components;
+  bool restart = true;
+};
+
+/// The processes that have something to run, in the order of the deployment. Throws ConfigError
+/// when a component is in no process or in two, or a process names one that the graph does not
+/// have.
+[[nodiscard]] std::vector<PlacedProcess> place_components(const GraphSpec& graph,
+                                                          const DeploymentSpec& deployment);
 
 }  // namespace furrow::graph

@@ -23,8 +23,11 @@ struct RuntimeOptions {
   ClockMode clock = ClockMode::kReal;
   int threads = 2;
   std::uint64_t seed = 1;
-  std::vector<std::string> components;  ///< of this process; empty: all
-  Transport* transport = nullptr;       ///< none: nothing leaves the process
+  std::vector<std::string> components;        ///< of this process; empty: all
+  Transport* transport = nullptr;             ///< none: nothing leaves the process
+  std::string process;                        ///< this one's name
+  std::vector<PlacedProcess> processes = {};  ///< of the whole deployment; empty: only this one
+  std::function<Health()> wire_health = {};   ///< for the diagnostics; called once a second
 };
 
 struct InputStatus {
@@ -57,7 +60,8 @@ struct RunResult {
 };
 
 /// The components of one process and the executor that calls them. Construction checks the whole
-/// graph and throws ConfigError; destruction stops the executor before any component goes.
+/// graph and throws ConfigError; destruction stops the executor before any component goes. Every
+/// second of the graph's clock it publishes the health of its components on `diagnostics`.
 class Runtime {
  public:
   Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOptions& options);
@@ -70,8 +74,10 @@ class Runtime {
   RunResult run();
   /// From any thread.
   void request_stop(std::string_view reason);
-  /// From any thread.
+  /// Of the components of the graph that live here. From any thread.
   [[nodiscard]] std::vector<ComponentStatus> status() const;
+  /// Whether every other process that this one reads from or writes to is there. From any thread.
+  [[nodiscard]] bool connected() const;
 
  private:
   struct Impl;

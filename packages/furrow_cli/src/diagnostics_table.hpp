@@ -1,0 +1,16 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "furrow_ledger/ledger.hpp"
+#include "furrow_msgs/diagnostic_msgs.h"
+
+namespace furrow::cli {
+
+/// What the other processes last told of their health, and the wire of this one, for the report.
+[[nodiscard]] ledger::ReportTable diagnostics_table(
+    const std::map<std::string, diagnostic_msgs::msg::DiagnosticStatus>& diagnostics,
+    const std::string& own_process);
+
+}  // namespace furrow::cli

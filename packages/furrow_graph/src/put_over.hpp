@@ -1,0 +1,21 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "furrow_core/parameters.hpp"
+
+namespace furrow::graph {
+
+/// Adds a parameter, or replaces the one of its name.
+inline void put_over(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
+  const auto it = std::ranges::find(parameters, parameter.name, &GivenParameter::name);
+  if (it == parameters.end()) {
+    parameters.push_back(std::move(parameter));
+  } else {
+    *it = std::move(parameter);
+  }
+}
+
+}  // namespace furrow::graph

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "furrow_core/result.hpp"
+#include "furrow_graph/transport.hpp"
+#include "wave.hpp"
+
+namespace furrow::graph {
+
+/// Carries the waves of a lock-step among the processes of a deployment. Every process reads every
+/// wave of every other; who takes part in a wave is known to all beforehand.
+class WaveExchange {
+ public:
+  using Waves = std::vector<std::shared_ptr<const Wave>>;
+
+  /// All processes take part in a wave whose number is a multiple of this, so that none is further
+  /// ahead of another than the wire keeps.
+  static constexpr std::uint64_t kAllTakePart = 16;
+
+  /// `processes` are all, in the same order everywhere; `run` is the same in all.
+  WaveExchange(Transport& transport, const std::vector<std::string>& processes,
+               const std::string& own, std::uint64_t run);
+  ~WaveExchange();
+
+  [[nodiscard]] std::size_t own() const { return own_; }
+  [[nodiscard]] std::size_t size() const { return peers_.size(); }
+
+  /// Sends this process's part, when it has one, and waits for that of every other process that is
+  /// active: the parts by process, null where there is none. kUnavailable when a process is gone,
+  /// never came, was started twice or runs something else, or when the wait was ended.
+  [[nodiscard]] Result<Waves> exchange(std::uint64_t number, const std::vector<bool>& active,
+                                       std::shared_ptr<Wave> mine);
+
+  /// Ends the wait, and tells the others that this process leaves. From any thread.
+  void abort(const std::string& reason);
+
+ private:
+  struct Peer {
+    std::string name;
+    std::optional<std::uint64_t> instance;
+    std::deque<std::shared_ptr<const Wave>> waiting;
+  };
+
+  void take(const std::shared_ptr<const Wave>& wave);
+  void fail(const std::string& reason);
+  [[nodiscard]] std::string missing(std::uint64_t number, const std::vector<bool>& active) const;
+  [[nodiscard]] bool some_process_is_gone(bool waiting_for_start);
+  void send(std::shared_ptr<Wave> wave);
+
+  const std::uint64_t run_;
+  const std::uint64_t instance_;
+  std::size_t own_ = 0;
+  std::unique_ptr<WireWriter> writer_;
+  std::unique_ptr<WireReader> reader_;
+
+  std::mutex mutex_;  // of what follows
+  std::condition_variable arrived_;
+  std::vector<Peer> peers_;
+  std::string failure_;
+  bool all_were_there_ = false;
+  std::optional<std::chrono::steady_clock::time_point> incomplete_since_;
+};
+
+}  // namespace furrow::graph
