@@ -42,6 +42,11 @@ void RowPriorParameters::visit(ParameterVisitor& v) {
   v.visit(
       {.name = "row_min_crops", .description = "crops that make a row", .min = 1.0, .max = 1000.0},
       row_min_crops);
+  v.visit({.name = "row_contrast",
+           .description = "how much denser crops stand on a row than on the mean of the width",
+           .min = 1.0,
+           .max = 1000.0},
+          row_contrast);
   v.visit({.name = "row_off_share",
            .description = "share of crops that stand anywhere",
            .min = 1e-4,
@@ -101,11 +106,15 @@ void RowPrior::find_rows(double length_m) {
   smooth_density();
   const double low_m = samples_.front().y_m;
   const auto cells = static_cast<std::ptrdiff_t>(density_.size());
+  double crops = 0.0;
+  for (const Sample& sample : samples_) crops += sample.crop;
+  const double width_m = std::max(samples_.back().y_m - low_m, parameters_.row_gap_m);
+  const double least_density = parameters_.row_contrast * crops / width_m;
   // The densest place is a row; what is nearer than the gap belongs to it; and again.
   const auto gap = static_cast<std::ptrdiff_t>(parameters_.row_gap_m / kGrid_m);
   while (true) {
     const auto peak = std::ranges::max_element(density_);
-    if (*peak <= 0.0) break;
+    if (*peak <= 0.0 || *peak < least_density) break;
     const auto at = peak - density_.begin();
     const double peak_y_m = low_m + static_cast<double>(at) * kGrid_m;
     const auto begin = density_.begin() + std::max<std::ptrdiff_t>(at - gap, 0);

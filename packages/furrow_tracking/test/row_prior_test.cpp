@@ -95,6 +95,16 @@ TEST(RowPrior, TellsNothingWithoutRows) {
   EXPECT_EQ(prior.log_odds(0.0), 0.0);
 }
 
+TEST(RowPrior, TakesManyDoubtfulWeedsForNoRow) {
+  // 80 weeds per m2 of which each might be a crop: many in every strip, but in none more.
+  RowPrior prior(enabled());
+  std::vector<Track> tracks = field(6, 80.0);
+  std::erase_if(tracks, [](const Track& track) { return track.class_log_odds > 0.0; });
+  for (Track& track : tracks) track.class_log_odds = -1.0;
+  prior.learn(tracks);
+  EXPECT_TRUE(prior.rows().empty());
+}
+
 TEST(RowPrior, LeavesOutTracksFarAcross) {
   RowPrior prior(enabled());
   std::vector<Track> tracks = field(5, 10.0);

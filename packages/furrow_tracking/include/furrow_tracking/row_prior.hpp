@@ -13,7 +13,8 @@ struct RowPriorParameters {
   bool row_prior = false;
   double row_sd_m = 0.012;
   double row_gap_m = 0.15;
-  double row_min_crops = 6.0;
+  double row_min_crops = 4.0;
+  double row_contrast = 3.0;
   double row_off_share = 0.02;
   double row_max_log_odds = 3.0;
 
