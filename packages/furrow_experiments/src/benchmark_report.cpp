@@ -16,6 +16,7 @@ LineChart time_chart(const PlannerBenchmark& benchmark, const std::vector<Benchm
   chart.y_label = by_targets ? "median, \xC2\xB5s" : "p99, \xC2\xB5s";
   chart.log_x = true;
   chart.log_y = true;
+  chart.width_px = 600.0;
   chart.height_px = 420.0;
   for (const PlannerChoice& choice : benchmark.planners) {
     const std::string planner = to_string(choice);

@@ -45,7 +45,7 @@ std::vector<ledger::Tile> tiles(const std::vector<Pair>& pairs, const Rows& rows
     }
     const auto& priorities = *best->biodiversity->priorities;
     tiles.push_back(
-        {"High priority treated, " + number(best->plain->weeds_per_m2, 1) + " weeds/m\xC2\xB2",
+        {"High priority at " + number(best->plain->weeds_per_m2, 1) + " weeds/m\xC2\xB2",
          fixed(priorities.treated_high_pct, 1) + " %",
          planner_name(*best->plain) + paper_text(priorities.paper_high_pct), ""});
   }
@@ -58,6 +58,7 @@ LineChart high_chart(const Rows& rows, const std::string& view, bool high) {
   chart.x_label = "weeds per m\xC2\xB2";
   chart.y_label = "treated, %";
   chart.log_x = true;
+  chart.width_px = 600.0;
   chart.height_px = 380.0;
   for (const std::string& planner : main_planners(rows)) {
     LineChart::Series series{planner, planner_color(planner), {}, false};
@@ -87,6 +88,7 @@ ledger::GroupedBarChart share_chart(const Rows& rows, const std::string& planner
   ledger::GroupedBarChart chart;
   chart.title = planner + ", " + view + " view";
   chart.y_label = "treated, %";
+  chart.width_px = 600.0;
   const auto fields = field_names(rows);
   chart.categories = fields;
   for (const bool high : {true, false}) {
@@ -116,6 +118,7 @@ ledger::GroupedBarChart paper_chart() {
   ledger::GroupedBarChart chart;
   chart.title = "paper (nOTSP, static division)";
   chart.y_label = "treated, %";
+  chart.width_px = 600.0;
   ledger::GroupedBarChart::Series high_plain{"high, plain", "#f2b48f", {}};
   ledger::GroupedBarChart::Series high{"high, biodiversity", "#d55e00", {}};
   ledger::GroupedBarChart::Series low_plain{"low, plain", "#a9c9de", {}};

@@ -16,6 +16,7 @@ using ledger::number;
 using ledger::ReportTable;
 using Rows = std::vector<EvaluationRow>;
 
+constexpr double kWidth_px = 600.0;
 constexpr const char* kDensityLabel = "weeds per m\xC2\xB2";
 
 ledger::Sample with_ci(const EvaluationRow& row) {
@@ -45,6 +46,7 @@ LineChart loss_chart(const Rows& rows, const std::string& view) {
   chart.x_label = kDensityLabel;
   chart.y_label = "loss, %";
   chart.log_x = true;
+  chart.width_px = kWidth_px;
   chart.height_px = 400.0;
   for (const std::string& planner : main_planners(rows)) {
     LineChart::Series series;
@@ -69,11 +71,11 @@ LineChart loss_chart(const Rows& rows, const std::string& view) {
   return chart;
 }
 
-/// The row of the best planner that was asked for, in the last view.
+/// The row of least loss; of several the last, which is of the better planner.
 const EvaluationRow* best_of(const Rows& rows, const std::string& field) {
   const EvaluationRow* best = nullptr;
   for (const EvaluationRow& row : rows) {
-    if (row.field == field && (best == nullptr || row.loss_pct < best->loss_pct)) best = &row;
+    if (row.field == field && (best == nullptr || row.loss_pct <= best->loss_pct)) best = &row;
   }
   return best;
 }
@@ -99,8 +101,8 @@ ReportTable field_table(const Rows& rows, const std::string& field,
     table.header.insert(table.header.end(),
                         {view + " loss, %", "\xC2\xB1 95 %", "travel, m", "\xC2\xB1 sd"});
   }
-  table.header.insert(table.header.end(), {"optimum, %", "sprays per weed", "replan p50, \xC2\xB5s",
-                                           "replan p99, \xC2\xB5s"});
+  table.header.insert(table.header.end(),
+                      {"optimum, %", "sprays/weed", "p50, \xC2\xB5s", "p99, \xC2\xB5s"});
   if (const PaperFigures* paper = paper_figures(field); paper != nullptr) {
     std::vector<std::string> line = {"paper (nOTSP, " + std::string(paper->field) + ")"};
     for (const std::string& view : views) {
@@ -152,6 +154,7 @@ ledger::GroupedBarChart travel_chart(const Rows& rows, const std::string& view) 
   ledger::GroupedBarChart chart;
   chart.title = "Travel of an axis, " + view + " view";
   chart.y_label = "m";
+  chart.width_px = kWidth_px;
   const auto fields = field_names(rows);
   for (const std::string& field : fields) chart.categories.push_back(field);
   for (const std::string& planner : main_planners(rows)) {
@@ -176,6 +179,7 @@ LineChart sweep_chart(const std::vector<SweepPoint>& points, const std::string& 
   LineChart chart;
   chart.title = title;
   chart.x_label = x_label;
+  chart.width_px = kWidth_px;
   chart.y_label = "loss, %";
   Rows rows;
   for (const SweepPoint& point : points) rows.push_back(point.row);
