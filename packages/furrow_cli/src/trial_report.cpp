@@ -80,7 +80,8 @@ ledger::ReportTable stretch_table(const TrialResult& result) {
   for (const TrialStretch& stretch : result.stretches) {
     const ledger::Summary& s = stretch.summary;
     std::string causes;
-    for (const auto& [name, count] : causes_json(s).items()) {
+    const Json by_cause = causes_json(s);
+    for (const auto& [name, count] : by_cause.items()) {
       causes += (causes.empty() ? "" : ", ") + name + " " + count.dump();
     }
     table.rows.push_back({stretch.region.crop ? "crop-weed" : "weed-only", stretch.region.field,
