@@ -82,7 +82,8 @@ class DdsRecorder::Impl {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> list;
     for (const auto& [topic, reason] : skipped_) {
-      list.push_back(topic + ": " + reason);
+      list.push_back(topic);
+      list.back().append(": ").append(reason);
     }
     return list;
   }

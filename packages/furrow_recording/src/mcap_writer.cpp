@@ -230,7 +230,7 @@ class Writer::Impl {
 
   /// `tail`: records' bytes behind those in memory, not copied; without compression only.
   Status end_chunk(ByteView tail) {
-    const Status status = write_chunk(tail);
+    Status status = write_chunk(tail);
     if (!status) {
       lost_ += pending_messages_;
     }

@@ -96,7 +96,7 @@ class MessageCursor::Impl {
     if (open_bytes_ + span.records.size() > reader_.limits.open_bytes) {
       return Error{ErrorCode::kOutOfRange, "more chunks overlap in time than fit into memory"};
     }
-    const Status status = for_each_record(
+    Status status = for_each_record(
         span.records, [this, &span](Opcode opcode, ByteView content, std::size_t offset) -> Status {
           if (opcode != Opcode::kMessage) {
             return {};

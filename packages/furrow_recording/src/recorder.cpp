@@ -1,9 +1,6 @@
 #include "furrow_recording/recorder.hpp"
 
-#include <sys/statvfs.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <deque>
 #include <limits>
 #include <system_error>
@@ -49,22 +46,6 @@ mcap::Compression compression_of(const std::string& name) {
 }
 
 }  // namespace
-
-RecorderEnvironment RecorderEnvironment::of_this_machine() {
-  RecorderEnvironment environment;
-  environment.create_file = mcap::create_file;
-  environment.free_bytes = [](const std::filesystem::path& path) -> Result<std::uint64_t> {
-    struct statvfs info {};
-    const auto folder =
-        path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
-    if (statvfs(folder.c_str(), &info) != 0) {
-      return Error{ErrorCode::kIo, "cannot tell the space left in " + folder.string() + ": " +
-                                       std::generic_category().message(errno)};
-    }
-    return static_cast<std::uint64_t>(info.f_bavail) * info.f_frsize;
-  };
-  return environment;
-}
 
 class Recorder::Impl {
  public:
@@ -369,7 +350,7 @@ class Recorder::Impl {
       ++topic.dropped;
       return fail(status.error());
     }
-    const Status status = writer_->write(
+    Status status = writer_->write(
         {*topic.channel, topic.sequence, message.log_time, message.publish_time, *message.payload});
     if (!status) {
       ++topic.dropped;
