@@ -10,6 +10,12 @@ void DedicatedThread::start() {
   thread_ = std::thread([this] { loop(); });
 }
 
+void DedicatedThread::release() {
+  const std::lock_guard lock(mutex_);
+  released_ = true;
+  wake_.notify_one();
+}
+
 void DedicatedThread::wake() {
   const std::lock_guard lock(mutex_);
   woken_ = true;
@@ -52,6 +58,10 @@ void DedicatedThread::run_due_timers() {
 
 void DedicatedThread::loop() {
   set_priority();
+  {
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [this] { return released_ || stop_.requested(); });
+  }
   const auto wanted = [this] { return woken_ || stop_.requested(); };
   while (!stop_.requested()) {
     {

@@ -16,8 +16,10 @@ class DedicatedThread {
   DedicatedThread(Node& node, const RealtimeClock& clock, const StopRequest& stop)
       : node_(node), clock_(clock), stop_(stop) {}
 
-  /// The timers' next times must be set.
+  /// Makes the thread; it calls nothing before release().
   void start();
+  /// The timers' next times must be set.
+  void release();
   /// Something came for the node, or the stop was requested. From any thread.
   void wake();
   void join();
@@ -33,6 +35,7 @@ class DedicatedThread {
   const StopRequest& stop_;
   std::mutex mutex_;
   std::condition_variable wake_;
+  bool released_ = false;
   bool woken_ = false;
   std::thread thread_;
 };

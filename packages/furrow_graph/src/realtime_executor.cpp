@@ -49,6 +49,10 @@ class RealtimeExecutor final : public Executor {
 
   RunResult run(std::span<const std::unique_ptr<Node>> nodes) override {
     prepare(nodes);
+    std::vector<std::thread> workers;
+    for (int i = 0; i < threads_; ++i) workers.emplace_back([this] { work(); });
+    for (auto& [node, thread] : dedicated_) thread->start();
+    start_timers(nodes);
     if (each_second_) timer_queue_.push({now() + kSecond, nullptr, 0});
     running_ = true;
     for (auto& [route, message] : constructed_) deliver(*route, message);
@@ -56,9 +60,7 @@ class RealtimeExecutor final : public Executor {
     for (const auto& node : nodes) {
       if (node->has_messages()) schedule(*node);
     }
-    for (auto& [node, thread] : dedicated_) thread->start();
-    std::vector<std::thread> workers;
-    for (int i = 0; i < threads_; ++i) workers.emplace_back([this] { work(); });
+    for (auto& [node, thread] : dedicated_) thread->release();
     watch_timers();
     for (std::thread& worker : workers) worker.join();
     for (auto& [node, thread] : dedicated_) thread->join();
@@ -84,19 +86,26 @@ class RealtimeExecutor final : public Executor {
   };
 
   void prepare(std::span<const std::unique_ptr<Node>> nodes) {
-    lock_memory_for(nodes);  // takes its time: before the timers start
+    lock_memory_for(nodes);
+    const std::lock_guard lock(mutex_);
+    for (const auto& node : nodes) {
+      if (node->spec().dedicated_thread) {
+        dedicated_.emplace(node.get(), std::make_unique<DedicatedThread>(*node, clock_, stop_));
+      } else {
+        strands_[node.get()].timer_pending.assign(node->timers().size(), false);
+      }
+    }
+  }
+
+  /// When every thread is there: making them takes its time, the more with locked memory.
+  void start_timers(std::span<const std::unique_ptr<Node>> nodes) {
     const Time start = now();
     const std::lock_guard lock(mutex_);
     for (const auto& node : nodes) {
-      for (Node::Timer& timer : node->timers()) timer.next = start + timer.period;
-      if (node->spec().dedicated_thread) {
-        dedicated_.emplace(node.get(), std::make_unique<DedicatedThread>(*node, clock_, stop_));
-        continue;
-      }
-      Strand& strand = strands_[node.get()];
-      strand.timer_pending.assign(node->timers().size(), false);
       for (std::size_t i = 0; i < node->timers().size(); ++i) {
-        timer_queue_.push({node->timers()[i].next, node.get(), i});
+        Node::Timer& timer = node->timers()[i];
+        timer.next = start + timer.period;
+        if (!node->spec().dedicated_thread) timer_queue_.push({timer.next, node.get(), i});
       }
     }
   }
