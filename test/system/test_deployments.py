@@ -122,7 +122,7 @@ class RealTimeTest(DeploymentCase):
                 self.assertNotEqual(row["reason"], "", row)
 
     def test_the_row_goes_on_whoever_is_killed(self):
-        up = self.up("--length", 10)
+        up = self.up("--length", 10, "--resume")
         up.wait_for("weeding 1")
         names = [name for name in up.children() if name not in ("robot", "scorer")]
         self.assertGreaterEqual(len(names), 8)
@@ -136,16 +136,21 @@ class RealTimeTest(DeploymentCase):
                 time.sleep(0.05)
             time.sleep(1.0)
         self.assertEqual(up.finish(), 0, up.text())
-        self.assert_complete(self.ledger())
+        rows = self.ledger()
+        self.assert_complete(rows)
+        # The last metre is driven with everybody back.
+        weeds = [row for row in rows if row["kind"] == "weed" and float(row["x_m"]) > 9.0]
+        self.assertTrue(any(row["outcome"] != "missed" for row in weeds), weeds)
 
-    def test_without_the_world_the_run_ends(self):
-        up = self.up("--length", 10)
-        up.wait_for("weeding 1")
-        started = time.monotonic()
-        os.kill(up.children()["robot"], signal.SIGKILL)
-        up.wait_for("robot.*the run cannot go on without it")
-        self.assertEqual(up.finish(), 1)
-        self.assertLess(time.monotonic() - started, STOP_WITHIN_S + 1.0)
+    def test_without_world_or_ledger_the_run_ends(self):
+        for name in ("robot", "scorer"):
+            up = self.up("--length", 10)
+            up.wait_for("weeding 1")
+            started = time.monotonic()
+            os.kill(up.children()[name], signal.SIGKILL)
+            up.wait_for(f"{name}.*the run cannot go on without it")
+            self.assertEqual(up.finish(), 1)
+            self.assertLess(time.monotonic() - started, STOP_WITHIN_S + 1.0)
 
     def test_ctrl_c_ends_all_within_two_seconds(self):
         up = self.up("--length", 20)
@@ -174,6 +179,25 @@ class RealTimeTest(DeploymentCase):
         self.assertEqual(up.finish(), 0, up.text())
         self.assertNotIn("signal", up.text())
         self.assert_complete(self.ledger())
+
+    def test_a_subscriber_that_never_reads_holds_nobody_up(self):
+        up = self.up("--length", 6)
+        up.wait_for("weeding 1")
+        for topic in ("localization/odometry", "axis/event", "planner/plan"):
+            reader = subprocess.Popen(
+                [furrow_program(), "topic", "echo", topic, "--domain", str(domain()),
+                 "--wait", "10"],
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.addCleanup(reader.wait)
+            self.addCleanup(reader.kill)
+            time.sleep(1.0)
+            reader.send_signal(signal.SIGSTOP)
+        self.assertEqual(up.finish(), 0, up.text())
+        rows = self.ledger()
+        self.assert_complete(rows)
+        weeds = [row for row in rows if row["kind"] == "weed"]
+        treated = [row for row in weeds if row["outcome"] != "missed"]
+        self.assertGreater(len(treated), 0.5 * len(weeds))
 
     def join_late(self, count):
         joiners = [subprocess.Popen(

@@ -11,7 +11,7 @@
 #include "run_options.hpp"
 #include "share.hpp"
 #include "supervisor.hpp"
-#include "supervisor_health.hpp"
+#include "supervisor_wire.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -19,6 +19,7 @@ namespace {
 struct UpOptions {
   RunOptions run;
   std::string host;
+  bool resume = false;
 };
 
 std::string pick_host(const graph::DeploymentSpec& deployment, const std::string& wanted) {
@@ -75,8 +76,8 @@ int up(const UpOptions& options) {
   }
   Supervisor::block_signals();
   const auto server = make_discovery_server(deployment, host, wire);
-  SupervisorHealth health(wire);
-  Supervisor supervisor(std::move(processes), [&health] { return health.take_changes(); });
+  SupervisorWire watch(wire, options.resume);
+  Supervisor supervisor(std::move(processes), [&watch] { return watch.tick(); });
   return supervisor.run();
 }
 
@@ -89,6 +90,9 @@ void add_up_command(CLI::App& app, int& exit_code) {
       "up", "Runs all processes of a deployment that live on this host, and keeps them running.");
   add_run_options(*command, options->run);
   command->add_option("--host", options->host, "which host of the deployment this is");
+  command->add_flag("--resume", options->resume,
+                    "let tools start again that made themselves safe because a process or host was "
+                    "gone; otherwise a message on tool/reset must");
   command->callback([options, &exit_code] { exit_code = up(*options); });
 }
 

@@ -4,6 +4,7 @@
 
 #include "fixtures.hpp"
 #include "furrow_graph/runtime.hpp"
+#include "furrow_msgs/diagnostic_msgs.h"
 
 namespace furrow::graph {
 namespace {
@@ -82,6 +83,55 @@ TEST(Wire, WhatAnotherProcessPublishesIsRead) {
   run_three_plans(transport, {"r", "sink"});
   ASSERT_EQ(transport.readers.size(), 1u);
   EXPECT_TRUE(transport.readers.contains("tracker/tracks"));
+}
+
+/// The CDR forms of what is published on `diagnostics` in 2.5 s of simulated time.
+std::vector<std::vector<std::byte>> diagnostics(int threads) {
+  NotingTransport transport;
+  transport.outside_readers = true;
+  Registry registry = test::standard_registry();
+  test::add_sink(registry, [](Context& context, const furrow_msgs::msg::Plan& plan) {
+    context.count("plans");
+    if (plan.revision() % 2 == 0) context.health(HealthLevel::kWarn, "even");
+    if (plan.revision() == 25) context.request_stop("enough");
+  });
+  Runtime runtime(chain(), registry,
+                  {.clock = ClockMode::kLockstep,
+                   .threads = threads,
+                   .transport = &transport,
+                   .process = "p",
+                   .wire_health = [] { return Health(); }});
+  runtime.run();
+  std::vector<std::vector<std::byte>> forms;
+  const msgs::MessageType& type = *msgs::topics::Diagnostics::topic().type;
+  for (const MessagePtr& message : transport.written["diagnostics"]) {
+    auto& form = forms.emplace_back(type.serialized_size(message.get()));
+    EXPECT_TRUE(type.serialize(message.get(), form).ok());
+  }
+  return forms;
+}
+
+TEST(Wire, HealthIsPublishedEverySecondWithoutFiguresOfTheWallClock) {
+  const auto forms = diagnostics(1);
+  ASSERT_EQ(forms.size(), 2u);
+  EXPECT_EQ(forms, diagnostics(3));
+  diagnostic_msgs::msg::DiagnosticArray array;
+  ASSERT_TRUE(msgs::topics::Diagnostics::topic().type->deserialize(forms[0], &array).ok());
+  EXPECT_EQ(array.header().stamp().sec(), 1);
+  // A status for each component; none for the wire, whose figures are not of simulated time.
+  ASSERT_EQ(array.status().size(), 3u);
+  const auto& sink = array.status()[2];
+  EXPECT_EQ(sink.name(), "p: sink");
+  EXPECT_EQ(sink.hardware_id(), "p");
+  EXPECT_EQ(sink.level(), 1);
+  EXPECT_EQ(sink.message(), "even");
+  std::map<std::string, std::string> values;
+  for (const auto& value : sink.values()) values[value.key()] = value.value();
+  // What was published at whole tenths before the first second: nine plans.
+  EXPECT_EQ(values["count/plans"], "9");
+  EXPECT_EQ(values["received"], "9");
+  EXPECT_EQ(values["dropped"], "0");
+  EXPECT_FALSE(values.contains("busy_s"));
 }
 
 }  // namespace

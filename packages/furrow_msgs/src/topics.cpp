@@ -37,6 +37,15 @@ enum Row : std::size_t {
   kRows
 };
 
+// A stream of which gaps, and writers that died, are noticed and counted.
+constexpr Qos watched(Qos qos, Duration deadline) {
+  qos.deadline = deadline;
+  qos.liveliness_lease = Duration::milliseconds(100);
+  return qos;
+}
+constexpr Duration kFastGap = Duration::milliseconds(100);
+constexpr Duration kPlanGap = Duration::milliseconds(1000);
+
 const std::array<Topic, kRows>& table() {
   static const std::array<Topic, kRows> rows = {{
       {"clock", &message_type<topics::Clock::Message>(), sensor_qos(10), 0, "",
@@ -53,8 +62,9 @@ const std::array<Topic, kRows>& table() {
        "Angular rates and accelerations; rad/s, m/s2."},
       {"gnss/fix", &message_type<topics::GnssFix::Message>(), sensor_qos(10), 5, "gnss_antenna",
        "RTK position of the antenna; degrees, m, covariance in m2."},
-      {"localization/odometry", &message_type<topics::RobotOdometry::Message>(), sensor_qos(50), 50,
-       "field", "Pose X_FB of the base in the field frame, twist in the base frame."},
+      {"localization/odometry", &message_type<topics::RobotOdometry::Message>(),
+       watched(sensor_qos(50), kFastGap), 50, "field",
+       "Pose X_FB of the base in the field frame, twist in the base frame."},
       {"tf", &message_type<topics::Transforms::Message>(), sensor_qos(50), 50, "field",
        "Transforms that move: field to base_link."},
       {"tf_static", &message_type<topics::StaticTransforms::Message>(), latched_qos(), 0,
@@ -65,12 +75,13 @@ const std::array<Topic, kRows>& table() {
        "camera_optical", "The plants of one image: class, mask, box, stem (px and m), area (mm2)."},
       {"tracker/tracks", &message_type<topics::Tracks::Message>(), sensor_qos(5), 5, "field",
        "Every plant that is held in view or memory, refined over views; m, mm2."},
-      {"planner/plan", &message_type<topics::Plan::Message>(), sensor_qos(5), 5, "field",
-       "A route per axis and a decision for every track."},
-      {"planner/heartbeat", &message_type<topics::PlannerHeartbeat::Message>(), sensor_qos(1), 50,
-       "", "That the planner is alive; without it the tools make themselves safe."},
-      {"axis/state", &message_type<topics::AxisState::Message>(), sensor_qos(50), 50, "",
-       "Position, velocity and state of one axis; m, m/s."},
+      {"planner/plan", &message_type<topics::Plan::Message>(), watched(sensor_qos(5), kPlanGap), 5,
+       "field", "A route per axis and a decision for every track."},
+      {"planner/heartbeat", &message_type<topics::PlannerHeartbeat::Message>(),
+       watched(sensor_qos(1), kFastGap), 50, "",
+       "That the planner is alive; without it the tools make themselves safe."},
+      {"axis/state", &message_type<topics::AxisState::Message>(), watched(sensor_qos(50), kFastGap),
+       50, "", "Position, velocity and state of one axis; m, m/s."},
       {"axis/event", &message_type<topics::AxisEvent::Message>(), event_qos(), 0, "field",
        "A spray that was made, a stop that was skipped and why, a tool made safe and why."},
       {"joint_states", &message_type<topics::JointStates::Message>(), sensor_qos(50), 50, "",

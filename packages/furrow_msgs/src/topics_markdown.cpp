@@ -8,7 +8,15 @@ namespace {
 std::string qos_text(const Qos& qos) {
   std::string text = qos.reliability == Reliability::kReliable ? "reliable" : "best effort";
   if (qos.durability == Durability::kTransientLocal) text += ", latched";
-  return text + ", depth " + std::to_string(qos.depth);
+  text += ", depth " + std::to_string(qos.depth);
+  const auto milliseconds = [](Duration duration) {
+    return std::to_string(duration.count_ns() / 1'000'000) + " ms";
+  };
+  if (qos.deadline > Duration()) text += ", deadline " + milliseconds(qos.deadline);
+  if (qos.liveliness_lease > Duration()) {
+    text += ", liveliness lease " + milliseconds(qos.liveliness_lease);
+  }
+  return text;
 }
 
 }  // namespace
