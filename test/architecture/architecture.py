@@ -61,7 +61,8 @@ RESTRICTED = [
 # Where a package's use is for one purpose only.
 RESTRICTED_FILES = {
     # The annotations of this data set are YAML.
-    ("furrow_vision", "yaml-cpp"): {"packages/furrow_vision/src/dataset_cwfid.cpp"},
+    ("furrow_vision", "yaml-cpp"): {"packages/furrow_vision/src/dataset_cwfid.cpp",
+                                    "packages/furrow_vision/src/model_file.cpp"},
 }
 DDS_NAMES = re.compile(r"\beprosima::(fastdds|fastrtps)\b")
 

@@ -91,8 +91,7 @@ TEST(Conversions, MasksAsRuns) {
   EXPECT_FALSE(mask_from_runs({1, 3, 3}, 3, 2).ok());
   EXPECT_FALSE(mask_from_runs({1, 3}, 3, 2).ok());
   EXPECT_FALSE(mask_from_runs({7}, 3, 2).ok());
-  EXPECT_EQ(mask_runs(cv::Mat(1, 2, CV_8UC1, cv::Scalar(255))),
-            (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(mask_runs(cv::Mat(1, 2, CV_8UC1, cv::Scalar(255))), (std::vector<std::uint32_t>{0, 2}));
 }
 
 TEST(PoseBuffer, InterpolatesAndExtrapolates) {
