@@ -78,7 +78,10 @@ class Feeder final : public graph::Component {
     context.input<topics::AxisState>(
         [this](const auto& state) { world_.states.push_back(*state); });
     context.input<topics::Diagnostics>([this](const auto& array) {
-      for (const auto& status : array->status()) world_.diagnostics.push_back(status);
+      for (const auto& status : array->status()) {
+        // The graph itself tells of every component besides.
+        if (status.name().starts_with("driver:")) world_.diagnostics.push_back(status);
+      }
     });
   }
 
