@@ -141,7 +141,7 @@ class RobotSimulator final : public graph::Component {
     context.input<topics::TrueField>([this](const auto& field) {
       length_m_ = std::min(parameters_.length_m, field->length_m());
     });
-    context.input<topics::AxisEvent>([this](const auto& event) { land(*event); });
+    context.input<topics::AxisEvent>([this](const auto& event) { open_valve(*event); });
     context.every(Duration::seconds(1.0 / parameters_.rate_hz), [this](Time now) { step(now); });
     context.every(Duration::seconds(1.0 / parameters_.imu_rate_hz),
                   [this](Time now) { measure_turning(now); });
@@ -150,6 +150,14 @@ class RobotSimulator final : public graph::Component {
   }
 
  private:
+  /// A spray whose last drop has not left the nozzle yet.
+  struct Falling {
+    furrow_msgs::msg::AxisEvent event;
+    Time open;
+    Time close;
+    const geometry::AxisModel* axis;
+  };
+
   void step(Time now) {
     if (motion_ == nullptr) {
       motion_ = std::make_unique<simulation::RobotMotion>(parameters_.motion, context_.seed(), now);
@@ -160,6 +168,7 @@ class RobotSimulator final : public graph::Component {
     const BaseOdometry truth{now, state.X_FB, state.speed_mps, state.yaw_rate_radps};
     if (const Status added = truth_buffer_.add(truth); !added.ok()) return;
     truth_.publish(to_msg(truth, kFieldFrame));
+    land_what_has_left(now);
 
     const simulation::WheelReading reading = wheel_.measure(state);
     reckon(reading, now);
@@ -240,7 +249,7 @@ class RobotSimulator final : public graph::Component {
     status_out_.publish(std::move(status));
   }
 
-  void land(const furrow_msgs::msg::AxisEvent& event) {
+  void open_valve(const furrow_msgs::msg::AxisEvent& event) {
     if (event.event() != "sprayed") return;
     const auto axis = std::ranges::find(tool_.axes, event.axis(), &geometry::AxisModel::name);
     if (axis == tool_.axes.end()) {
@@ -254,17 +263,36 @@ class RobotSimulator final : public graph::Component {
       context_.count("openings_without_spray");
       return;
     }
-    const auto at_open = nozzle(*axis, window->open, graph::from_msg(event.opened()),
+    constexpr std::size_t kMostAtOnce = 1000;
+    if (falling_.size() == kMostAtOnce) {
+      context_.count("sprays_beyond_the_limit");
+      return;
+    }
+    falling_.push_back({event, window->open, *window->close, &*axis});
+  }
+
+  /// Where a spray lands is known when its last drop has left: the robot drives on until then.
+  void land_what_has_left(Time now) {
+    const auto has_left = [now](const Falling& spray) { return spray.close <= now; };
+    for (const Falling& spray : falling_) {
+      if (has_left(spray)) land(spray);
+    }
+    std::erase_if(falling_, has_left);
+  }
+
+  void land(const Falling& spray) {
+    const auto& event = spray.event;
+    const auto at_open = nozzle(*spray.axis, spray.open, graph::from_msg(event.opened()),
                                 event.position_opened_m(), event.velocity_opened_mps());
-    const auto at_close = nozzle(*axis, *window->close, graph::from_msg(event.closed()),
+    const auto at_close = nozzle(*spray.axis, spray.close, graph::from_msg(event.closed()),
                                  event.position_closed_m(), event.velocity_closed_mps());
     if (!at_open || !at_close) {
       context_.count("sprays_outside_the_memory");
       return;
     }
-    publish(event,
-            simulation::spray_patch(*at_open, *at_close, axis->nozzle.height_m, parameters_.spray),
-            axis->nozzle.footprint_radius_m);
+    const geometry::NozzleModel& model = spray.axis->nozzle;
+    publish(event, simulation::spray_patch(*at_open, *at_close, model.height_m, parameters_.spray),
+            model.footprint_radius_m);
   }
 
   void publish(const furrow_msgs::msg::AxisEvent& event, const simulation::SprayPatch& patch,
@@ -312,6 +340,7 @@ class RobotSimulator final : public graph::Component {
   std::unique_ptr<simulation::RobotMotion> motion_;
   PoseBuffer truth_buffer_{Duration::seconds(2.0)};
   std::map<std::string, simulation::SimulatedValve> valves_;
+  std::vector<Falling> falling_;
   geometry::Pose2 reckoned_;
   Time last_;
   double length_m_ = 0.0;
