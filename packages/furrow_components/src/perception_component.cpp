@@ -6,8 +6,8 @@
 #include "furrow_components/image_conversions.hpp"
 #include "furrow_geometry/camera.hpp"
 #include "furrow_graph/registry.hpp"
+#include "furrow_vision/detector_choice.hpp"
 #include "furrow_vision/growth_stage.hpp"
-#include "furrow_vision/index_detector.hpp"
 
 namespace furrow::components {
 namespace {
@@ -15,17 +15,14 @@ namespace {
 namespace topics = msgs::topics;
 
 struct Parameters {
-  std::string detector = "index";
+  vision::DetectorParameters detector;
   double ground_distance_m = 1.0;
   double min_score = 0.3;
-  vision::IndexDetectorParameters index;
+  bool use_depth = true;
   vision::GrowthStageParameters growth;
 
   void visit(ParameterVisitor& v) {
-    v.visit({.name = "detector",
-             .description = "index: vegetation index and row position, without learning",
-             .choices = {"index"}},
-            detector);
+    detector.visit(v);
     v.visit({.name = "ground_distance_m",
              .unit = "m",
              .description = "camera to ground, where the depth image says nothing",
@@ -37,7 +34,10 @@ struct Parameters {
              .min = 0.0,
              .max = 1.0},
             min_score);
-    index.visit(v);
+    v.visit({.name = "use_depth",
+             .description = "false: images are taken as they come, with ground_distance_m as the "
+                            "depth everywhere"},
+            use_depth);
     PrefixedVisitor growth_visitor(v, "stage_");
     growth.visit(growth_visitor);
   }
@@ -58,11 +58,12 @@ class Perception final : public graph::Component {
   explicit Perception(graph::Context& context)
       : context_(context),
         parameters_(context.parameters<Parameters>()),
-        detector_(std::make_unique<vision::IndexDetector>(parameters_.index)),
+        detector_(vision::make_detector(parameters_.detector)),
         growth_(parameters_.growth),
         out_(context.output<topics::Instances>()) {
     context.input<topics::CameraInfo>([this](const auto& info) { calibrate(*info); });
     context.input<topics::CameraDepth>([this](const auto& depth) {
+      if (!parameters_.use_depth) return;
       depth_ = depth;
       detect_when_complete();
     });
@@ -84,25 +85,27 @@ class Perception final : public graph::Component {
 
   // Image and depth of one exposure carry the same stamp and come in either order.
   void detect_when_complete() {
-    if (image_ == nullptr || depth_ == nullptr) return;
-    const auto& wanted = image_->header().stamp();
-    if (!(depth_->header().stamp() == wanted)) return;
+    if (image_ == nullptr) return;
+    if (parameters_.use_depth &&
+        (depth_ == nullptr || !(depth_->header().stamp() == image_->header().stamp()))) {
+      return;
+    }
     const auto image = std::exchange(image_, nullptr);
     const auto depth = std::exchange(depth_, nullptr);
     if (!camera_) {
       context_.count("images_before_camera_info");
       return;
     }
-    if (const Status done = detect(*image, *depth); !done.ok()) {
+    if (const Status done = detect(*image, depth.get()); !done.ok()) {
       context_.count("bad_images");
       context_.health(graph::HealthLevel::kWarn, done.error().message);
     }
   }
 
-  Status detect(const sensor_msgs::msg::Image& image, const sensor_msgs::msg::Image& depth) {
+  Status detect(const sensor_msgs::msg::Image& image, const sensor_msgs::msg::Image* depth) {
     const auto bgr = bgr_of(image);
     if (!bgr.ok()) return bgr.error();
-    const auto depth_m = depth_m_of(depth);
+    const auto depth_m = depth == nullptr ? Result<cv::Mat>(cv::Mat()) : depth_m_of(*depth);
     if (!depth_m.ok()) return depth_m.error();
     const auto found = detector_->detect({.bgr = *bgr,
                                           .depth_m = *depth_m,

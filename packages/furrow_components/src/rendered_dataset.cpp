@@ -110,6 +110,7 @@ std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& fra
     instance.box_px = {e.left, e.top, e.right - e.left + 1, e.bottom - e.top + 1};
     instance.mask = frame.plant_index(instance.box_px) == static_cast<int>(visible.plant_index);
     instance.stem_px = visible.stem_px;
+    instance.area_mm2 = visible.area_mm2;
     instances.push_back(std::move(instance));
   }
   return instances;

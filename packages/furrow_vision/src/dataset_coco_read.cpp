@@ -196,6 +196,8 @@ void read_instance(const Node& node, const std::map<std::int64_t, Category>& cat
       instance.stem_px = {keypoints.entry(at).number(), keypoints.entry(at + 1).number()};
     }
   }
+  if (node.has("area_mm2")) instance.area_mm2 = node.at("area_mm2").number();
+  if (node.has("score")) instance.score = node.at("score").number();
   image.instances.push_back(std::move(instance));
 }
 

@@ -45,6 +45,8 @@ Json annotation_json(const AnnotatedInstance& instance, cv::Size size) {
     json["keypoints"] = {instance.stem_px->x(), instance.stem_px->y(), 2};
     json["num_keypoints"] = 1;
   }
+  if (instance.area_mm2) json["area_mm2"] = *instance.area_mm2;
+  if (instance.score) json["score"] = *instance.score;
   return json;
 }
 
@@ -111,7 +113,9 @@ std::vector<AnnotatedInstance> to_annotations(const std::vector<Instance>& insta
                            .category = sub_class.name,
                            .box_px = instance.box_px,
                            .mask = instance.mask,
-                           .stem_px = instance.stem_px});
+                           .stem_px = instance.stem_px,
+                           .area_mm2 = instance.area_mm2,
+                           .score = instance.score * *best});
   }
   return annotations;
 }

@@ -146,7 +146,7 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
   } else if (kind == "mask_rcnn") {
     model.kind = ModelFile::Kind::kMaskRcnn;
     parts = {"backbone", "box_head", "mask_head"};
-    known.insert("anchors");
+    known.insert({"anchors", "feature_levels"});
   } else {
     throw Malformed{line_of(root["kind"]), "kind", "'" + kind + "' is not one_stage or mask_rcnn"};
   }
@@ -165,6 +165,7 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
         number<double>(needed(root, "offset_unit_px"), "offset_unit_px", 0.1, 1e4);
   } else {
     model.anchors = anchors_of(root);
+    model.feature_levels = number<int>(needed(root, "feature_levels"), "feature_levels", 1, 8);
   }
   for (const std::string& name : parts) model.parts.push_back(part(root, name, folder));
   return model;

@@ -58,9 +58,11 @@ def mask_of(annotation, height, width):
 
 
 class CocoSet:
-    """Images with instance ids, classes and stems. `classes` are names, crop species first."""
+    """Images with instance ids, classes and stems. `classes` are names, crop species first. Keeps
+    what it has decoded, up to `memory_bytes`."""
 
-    def __init__(self, file, classes=None):
+    def __init__(self, file, classes=None, memory_bytes=4 << 30):
+        self.memory_left, self.decoded = memory_bytes, {}
         file = pathlib.Path(file)
         content = json.loads(file.read_text())
         categories = {c["id"]: c for c in content["categories"]}
@@ -83,11 +85,21 @@ class CocoSet:
 
     def load(self, i):
         """BGR image; instance id map (-1: none); list of (class, stem u, stem v) by id."""
+        if i not in self.decoded:
+            sample = self._decode(i)
+            size = sample[0].nbytes + sample[1].nbytes
+            if size > self.memory_left:
+                return sample
+            self.memory_left -= size
+            self.decoded[i] = sample
+        return self.decoded[i]
+
+    def _decode(self, i):
         path, annotations = self.items[i]
         image = cv2.imread(str(path), cv2.IMREAD_COLOR)
         if image is None:
             raise SystemExit(f"{path}: not an image")
-        ids = np.full(image.shape[:2], -1, np.int32)
+        ids = np.full(image.shape[:2], -1, np.int16)
         plants = []
         for class_index, annotation in annotations:
             mask = mask_of(annotation, *image.shape[:2])

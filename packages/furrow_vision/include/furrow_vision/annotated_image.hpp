@@ -20,7 +20,9 @@ struct AnnotatedInstance {
   cv::Rect box_px;       ///< inside the image, not empty
   cv::Mat mask;          ///< CV_8U, size of box_px; 255 plant
   std::optional<Eigen::Vector2d> stem_px;
-  bool crowd = false;  ///< COCO's iscrowd: a region, not one plant
+  std::optional<double> area_mm2;  ///< leaf area of the whole plant from straight above
+  std::optional<double> score;     ///< of a detection; none: annotated by hand or known
+  bool crowd = false;              ///< COCO's iscrowd: a region, not one plant
 };
 
 struct AnnotatedImage {

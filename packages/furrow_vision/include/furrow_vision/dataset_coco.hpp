@@ -9,9 +9,9 @@ namespace furrow::vision {
 /// COCO instance annotations (Lin et al. 2014): polygons, uncompressed and compressed RLE. A
 /// category whose "supercategory" is "crop" is a crop, else a weed; a keypoint named "stem" is the
 /// stem. Beyond COCO, each image may hold "pose" [x_m, y_m, heading_rad], "velocity_mps",
-/// "stamp_ns", "sequence", "labelled" and "depth_file_name" (the structure of SB20 / SB21). File
-/// names are relative to the annotation file's folder. Pixels are not loaded.
-/// Errors name the file and the key of what is malformed.
+/// "stamp_ns", "sequence", "labelled" and "depth_file_name" (the structure of SB20 / SB21), and
+/// each annotation "area_mm2" and "score". File names are relative to the annotation file's folder.
+/// Pixels are not loaded. Errors name the file and the key of what is malformed.
 [[nodiscard]] Result<Dataset> read_coco(const std::filesystem::path& file);
 
 /// Writes what read_coco reads, masks as compressed RLE, so that they come back bit by bit. Image

@@ -36,7 +36,7 @@ struct AnchorLayout {
 ///   classes: [{name: sugar_beet, kind: crop}, {name: pigweed, kind: weed}]   # crops first
 ///
 /// A mask_rcnn has `backbone`, `box_head` and `mask_head` in place of `network`, and for stride and
-/// offset_unit_px `anchors: {sizes_px: [], strides_px: [], aspect_ratios: []}`.
+/// offset_unit_px `anchors: {sizes_px: [], strides_px: [], aspect_ratios: []}` and feature_levels.
 struct ModelFile {
   enum class Kind { kOneStage, kMaskRcnn };
   Kind kind = Kind::kOneStage;
@@ -44,9 +44,10 @@ struct ModelFile {
   std::vector<ModelPart> parts;
   std::vector<SubClass> classes;
   double ground_resolution_mm_per_px = 0.0;
-  std::int64_t stride_px = 0;   ///< one_stage
-  double offset_unit_px = 0.0;  ///< one_stage
-  AnchorLayout anchors;         ///< mask_rcnn
+  std::int64_t stride_px = 0;       ///< one_stage
+  double offset_unit_px = 0.0;      ///< one_stage
+  AnchorLayout anchors;             ///< mask_rcnn
+  std::int64_t feature_levels = 0;  ///< mask_rcnn: from which regions are cut; strides 4, 8, ...
 };
 
 /// The largest network that is read.
