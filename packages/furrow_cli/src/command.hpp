@@ -7,6 +7,7 @@ namespace furrow::cli {
 // Each adds one verb to the command line. A verb sets `exit_code` when it has run: 0 well, 1 ran
 // but failed or found faults. Bad usage and configuration throw, and main() makes them 2.
 void add_run_command(CLI::App& app, int& exit_code);
+void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_graph_command(CLI::App& app, int& exit_code);
 void add_params_command(CLI::App& app, int& exit_code);
 void add_dataset_command(CLI::App& app, int& exit_code);
@@ -18,5 +19,9 @@ void add_eval_trial_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_up_command(CLI::App& app, int& exit_code);
 void add_topic_command(CLI::App& app, int& exit_code);
+
+void add_detect_command(CLI::App& app, int& exit_code);
+void add_eval_vision_command(CLI::App& app, int& exit_code);
+void add_bench_vision_command(CLI::App& app, int& exit_code);
 
 }  // namespace furrow::cli

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   furrow::cli::add_run_command(app, exit_code);
   furrow::cli::add_up_command(app, exit_code);
+  furrow::cli::add_calibrate_command(app, exit_code);
   furrow::cli::add_graph_command(app, exit_code);
   furrow::cli::add_params_command(app, exit_code);
   furrow::cli::add_dataset_command(app, exit_code);
@@ -21,6 +22,9 @@ int main(int argc, char** argv) {
   furrow::cli::add_eval_trial_command(app, exit_code);
   furrow::cli::add_bench_command(app, exit_code);
   furrow::cli::add_topic_command(app, exit_code);
+  furrow::cli::add_detect_command(app, exit_code);
+  furrow::cli::add_eval_vision_command(app, exit_code);
+  furrow::cli::add_bench_vision_command(app, exit_code);
   constexpr int kBadUsage = 2;
   try {
     app.parse(argc, argv);

@@ -9,6 +9,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "diagnostics_table.hpp"
+#include "furrow_components/application_record.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_graph/runtime.hpp"
@@ -63,6 +64,11 @@ bool contains(const std::vector<std::string>& list, const std::string& entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
 }
 
+geometry::ToolModel tool_of(const PreparedGraph& prepared) {
+  const std::string file = graph::common_text(prepared.spec, "tool_file");
+  return file.empty() ? geometry::ToolModel() : geometry::load_tool_model(file);
+}
+
 ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
                                   const PreparedGraph& prepared, const RunOptions& options,
                                   const std::vector<graph::ComponentStatus>& components,
@@ -76,8 +82,19 @@ ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
   const bool real = !options.lockstep();
   record.info.more = {{"clock", options.clock},
                       {"messages dropped", std::to_string(dropped_messages(components))}};
-  record.tables = health_tables(components, real);
+  const geometry::ToolModel tool = tool_of(prepared);
+  const auto applications = components::applications_of(message, tool);
+  record.tables = components::use_tables(message, applications, tool);
+  for (ledger::ReportTable& table : health_tables(components, real)) {
+    record.tables.push_back(std::move(table));
+  }
   return record;
+}
+
+Status write_as_applied(const furrow_msgs::msg::RunRecord& message, const PreparedGraph& prepared,
+                        const RunOptions& options) {
+  return components::write_as_applied(options.out, message,
+                                      components::applications_of(message, tool_of(prepared)));
 }
 
 int write_report(const ledger::RunRecord& record, const field::FieldModel& field,
@@ -189,6 +206,10 @@ int run(const ProcessOptions& process_options) {
     return 1;
   }
   if (end != RunEnd::kRecord || observer.record() == nullptr) return 0;
+  if (const Status written = write_as_applied(*observer.record(), prepared, options); !written) {
+    std::cerr << "furrow: " << written.error().message << '\n';
+    return 1;
+  }
   const auto field = components::from_msg(observer.record()->field());
   const auto components = runtime.status();
   ledger::RunRecord record =

@@ -36,7 +36,8 @@ std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentS
   ledger::ReportTable health{
       "Components", {"component", "class", "health", "received", "dropped", "counters"}, {}};
   if (with_times) {
-    health.header.insert(health.header.end() - 1, {"busy", "longest call", "late timers"});
+    health.header.insert(health.header.end() - 1, {"busy", "longest call", "timers", "missed",
+                                                   "late p99", "late max", "thread"});
   }
   for (const graph::ComponentStatus& component : components) {
     std::uint64_t received = 0;
@@ -56,7 +57,11 @@ std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentS
     if (with_times) {
       row.push_back(number(component.busy_s, 2) + " s");
       row.push_back(number(1e3 * component.longest_call_s, 1) + " ms");
+      row.push_back(std::to_string(component.timers));
       row.push_back(std::to_string(component.missed_timers));
+      row.push_back(number(1e3 * component.timer_late_p99.to_seconds(), 2) + " ms");
+      row.push_back(number(1e3 * component.timer_late_max.to_seconds(), 2) + " ms");
+      row.push_back(component.thread);
     }
     row.push_back(counters);
     health.rows.push_back(std::move(row));

@@ -265,7 +265,7 @@ std::string to_html(const ObservationExperiment& experiment, const ObservationRe
 
   page.section(
       "Tables",
-      "Loss: weeds left untreated. Travel: of one axis over the whole row. Replan: time of "
+      "Loss: weeds left untreated. Travel: of one axis over the whole row. p50, p99: time of "
       "one plan in the last view, measured while other drives ran beside it.");
   for (const std::string& field : fields) page.table(field_table(rows, field, experiment.views));
   if (paper) {

@@ -1,0 +1,91 @@
+#include "vision_datasets.hpp"
+
+#include <unistd.h>
+
+#include <stdexcept>
+
+#include "console.hpp"
+#include "furrow_components/field_source.hpp"
+#include "furrow_components/rendered_dataset.hpp"
+#include "furrow_core/error.hpp"
+#include "furrow_vision/dataset_carrot_weed.hpp"
+#include "furrow_vision/dataset_coco.hpp"
+#include "furrow_vision/dataset_cwfid.hpp"
+#include "share.hpp"
+
+namespace furrow::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Neither set carries its ground resolution: estimates, which --resolution overrides. Carrot-Weed
+// was taken by hand, so that its own varies.
+constexpr double kCwfidResolution_mm = 0.11;
+constexpr double kCarrotWeedResolution_mm = 0.3;
+
+vision::Dataset value_or_throw(Result<vision::Dataset> dataset) {
+  if (!dataset.ok()) throw ConfigError(dataset.error().message);
+  return std::move(dataset).value();
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (fs::temp_directory_path() / "furrow_XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw std::runtime_error(name + ": cannot make the folder");
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+EvaluationSet render_evaluation_set(const fs::path& folder, std::int64_t images, cv::Size size,
+                                    std::uint64_t seed) {
+  components::RenderedDatasetParameters parameters;
+  parameters.images = images;
+  parameters.width_px = size.width;
+  parameters.height_px = size.height;
+  parameters.depth = true;
+  const auto species = components::load_species(share_folder() / "params" / "species.yaml");
+  ProgressBar bar("rendering");
+  const Status done =
+      components::render_dataset(parameters, species, seed, folder, [&](std::int64_t count) {
+        bar.show(static_cast<double>(count) / static_cast<double>(images), std::to_string(count));
+      });
+  bar.finish();
+  if (!done.ok()) throw std::runtime_error(done.error().message);
+  EvaluationSet set{"rendered", parameters.resolution_mm_per_px, {}};
+  for (const char* part : {"evaluation.json", "validation.json", "train.json"}) {
+    vision::Dataset read = value_or_throw(vision::read_coco(folder / part));
+    set.dataset.classes = read.classes;
+    for (auto& image : read.images) set.dataset.images.push_back(std::move(image));
+  }
+  return set;
+}
+
+EvaluationSet open_evaluation_set(const fs::path& path) {
+  if (!fs::exists(path)) throw ConfigError("--dataset " + path.string() + ": is not there");
+  if (fs::is_regular_file(path)) {
+    return {path.stem().string(), EvaluationSet{}.resolution_mm_per_px,
+            value_or_throw(vision::read_coco(path))};
+  }
+  if (fs::exists(path / "plant_masks")) {
+    return {"carrot_weed", kCarrotWeedResolution_mm,
+            value_or_throw(vision::read_carrot_weed(path))};
+  }
+  if (fs::exists(path / "masks")) {
+    return {"cwfid", kCwfidResolution_mm, value_or_throw(vision::read_cwfid(path))};
+  }
+  if (fs::exists(path / "evaluation.json")) {
+    const fs::path name = fs::weakly_canonical(path).filename();
+    return {name.string(), EvaluationSet{}.resolution_mm_per_px,
+            value_or_throw(vision::read_coco(path / "evaluation.json"))};
+  }
+  throw ConfigError("--dataset " + path.string() +
+                    ": no data set that Furrow reads (CWFID, Carrot-Weed, or evaluation.json)");
+}
+
+}  // namespace furrow::cli

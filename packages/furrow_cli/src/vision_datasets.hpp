@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "furrow_vision/annotated_image.hpp"
+
+namespace furrow::cli {
+
+/// A data set to be evaluated on.
+struct EvaluationSet {
+  std::string name;  ///< "rendered", "cwfid", "carrot_weed", or that of the file
+  double resolution_mm_per_px = 1.15;
+  vision::Dataset dataset;
+};
+
+/// A folder that goes with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// `images` pictures of this size with depth, drawn from `seed`, written into `folder`. Throws.
+[[nodiscard]] EvaluationSet render_evaluation_set(const std::filesystem::path& folder,
+                                                  std::int64_t images, cv::Size size,
+                                                  std::uint64_t seed);
+
+/// A folder of CWFID, of Carrot-Weed, or with a COCO file evaluation.json; or a COCO file. Throws
+/// ConfigError.
+[[nodiscard]] EvaluationSet open_evaluation_set(const std::filesystem::path& path);
+
+}  // namespace furrow::cli

@@ -1,0 +1,73 @@
+"""What the axes did: recorded on the map, safe when the planner is gone, and with CiA 402 drives."""
+
+import json
+import subprocess
+import unittest
+
+from furrow_case import ROOT, FurrowCase, furrow_program
+
+TRUE_DETECTIONS = ("--graph", "weeding_true_detections", "--length", 4, "--seed", 7)
+
+
+class AsAppliedTest(FurrowCase):
+
+    def test_every_spray_is_on_the_map_in_wgs84(self):
+        summary = self.run_graph(*TRUE_DETECTIONS)
+        collection = json.loads((self.out / "as_applied.geojson").read_text())
+        features = collection["features"]
+        self.assertEqual(len(features), summary["sprays"])
+        self.assertGreater(len(features), 10)
+        for feature in features:
+            longitude, latitude = feature["geometry"]["coordinates"]
+            self.assertAlmostEqual(latitude, 50.6150, delta=0.001)
+            self.assertAlmostEqual(longitude, 6.9870, delta=0.001)
+            self.assertGreater(feature["properties"]["volume_ml"], 0.0)
+        report = (self.out / "report.html").read_text()
+        for title in ("Use by nozzle", "Use by crop row", "Use by area"):
+            self.assertIn(title, report)
+
+    def test_a_dry_run_sprays_nothing(self):
+        summary = self.run_graph(*TRUE_DETECTIONS, "--set", "driver.dry_run=true")
+        self.assertEqual(summary["sprays"], 0)
+        self.assertEqual(summary["treated_accurate"], 0)
+        self.assertGreater(sum(summary["axis_travel_m"]), 1.0)
+        self.assertEqual(json.loads((self.out / "as_applied.geojson").read_text())["features"], [])
+
+
+class SafetyTest(FurrowCase):
+
+    def test_a_planner_that_beats_too_slowly_is_lost(self):
+        summary = self.run_graph(*TRUE_DETECTIONS, "--set", "planner.heartbeat_rate_hz=1")
+        self.assertEqual(summary["sprays"], 0)
+        report = (self.out / "report.html").read_text()
+        self.assertIn("Made safe", report)
+        self.assertIn("peer_lost", report)
+
+
+class DriveTest(FurrowCase):
+
+    def test_the_row_is_weeded_by_cia402_drives(self):
+        script = ROOT / "launch_scripts" / "cia402_demo.sh"
+        furrow_program()
+        done = subprocess.run([script, "--length", "3", "--seed", "7", "--out", self.out],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        treated = summary["treated_accurate"] + summary["treated_partial"]
+        self.assertGreater(treated, 0.8 * summary["weeds_total"])
+        self.assertEqual(summary["crops_hit"], 0)
+
+    def test_drives_that_are_not_there_are_told(self):
+        done = self.furrow("run", "--graph", "weeding_cia402", "--no-wire", "--clock", "lockstep",
+                           "--length", 2, "--out", self.out,
+                           *(argument for axis in range(1, 5) for argument in
+                             ("--set", f"driver_axis_{axis}.drive_port={9 + axis}")))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual(summary["sprays"], 0)
+        self.assertIn("no connection to the drive", (self.out / "report.html").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
