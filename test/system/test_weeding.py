@@ -69,7 +69,8 @@ class RenderedRowTest(FurrowCase):
     def test_report_is_whole_and_self_contained(self):
         out = self.runs[0][0]
         self.assertEqual(sorted(path.name for path in out.iterdir()),
-                         ["ledger.csv", "map.svg", "report.html", "summary.json"])
+                         ["as_applied.geojson", "ledger.csv", "map.svg", "report.html",
+                          "summary.json"])
         page = (out / "report.html").read_text()
         self.assertTrue(page.rstrip().endswith("</html>"))
         for outside in ("src=\"http", "href=\"http", "<script", "url(http"):
@@ -105,10 +106,10 @@ class DistractionsTest(FurrowCase):
     def test_a_report_replaces_the_one_before(self):
         common = ["--graph", "weeding_true_detections", "--length", 3]
         self.run_graph(*common, "--seed", 1)
-        before = self.ledger()
+        before, files = self.ledger(), sorted(self.out.iterdir())
         self.run_graph(*common, "--seed", 2)
         self.assertNotEqual(before, self.ledger())
-        self.assertEqual(len(list(self.out.iterdir())), 4)
+        self.assertEqual(sorted(self.out.iterdir()), files)
 
     def test_generated_field_can_be_kept_and_run_again(self):
         for name in ("field.csv", "field.geojson"):
