@@ -10,6 +10,7 @@ python3-opencv and libopenblas0-pthread. Uses a GPU where torch finds one.
 """
 
 import argparse
+import copy
 import hashlib
 import json
 import pathlib
@@ -71,7 +72,6 @@ def validate(model, coco, crops, device, limit=120):
             total += 1
             if len(peaks) and np.hypot(peaks[:, 0] - u, peaks[:, 1] - v).min() <= 10:
                 found += 1
-    model.train()
     iou = intersection / np.maximum(union, 1)
     return {"iou_vegetation": iou[0], "iou_crop": iou[1], "iou_weed": iou[2],
             "stem_recall_10px": found / max(total, 1)}
@@ -96,7 +96,7 @@ def class_weights(coco, limit=200):
 
 
 def export(model, classes, out, resolution_mm_per_px):
-    model.eval().cpu()
+    model = copy.deepcopy(model).eval().cpu()
     file = out / "one_stage.onnx"
     torch.onnx.export(model, torch.zeros(1, 3, 480, 640), str(file), opset_version=11,
                       input_names=["image"], output_names=["output"],
@@ -160,6 +160,9 @@ def main():
     model = one_stage.OneStage(len(train.classes), arguments.width).to(device)
     if checkpoint:
         model.load_state_dict(checkpoint["model"])
+    # The mean over the last few hundred steps is what is kept: it is steadier than any one of them.
+    average = torch.optim.swa_utils.AveragedModel(
+        model, avg_fn=lambda mean, new, _: 0.998 * mean + 0.002 * new, use_buffers=True)
     weights = class_weights(train).to(device)
     arguments.out.mkdir(parents=True, exist_ok=True)
 
@@ -181,25 +184,25 @@ def main():
             torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)
             optimizer.step()
             schedule.step()
+            average.update_parameters(model)
             steps += 1
             for name, value in parts.items():
                 sums[name] = sums.get(name, 0.0) + float(value)
         row = {"epoch": epoch, "minutes": (time.time() - start) / 60,
                **{name: value / steps for name, value in sums.items()},
-               **validate(model, validation, crops, device)}
+               **validate(average.module, validation, crops, device)}
         log.append(row)
         print(json.dumps({k: round(v, 4) for k, v in row.items()}), flush=True)
         score = row["iou_crop"] + row["iou_weed"] + row["stem_recall_10px"]
         if score > best:
             best = score
-            torch.save({"model": model.state_dict(), "classes": train.classes, "width": arguments.width},
-                       arguments.out / "one_stage.pt")
+            torch.save({"model": average.module.state_dict(), "classes": train.classes,
+                        "width": arguments.width}, arguments.out / "one_stage.pt")
+            export(average.module, train.classes, arguments.out, arguments.resolution)
         (arguments.out / "log.json").write_text(json.dumps(log, indent=1))
         plot(log, arguments.out / "curves.png")
         if arguments.minutes and row["minutes"] > arguments.minutes:
             break
-    model.load_state_dict(torch.load(arguments.out / "one_stage.pt")["model"])
-    export(model, train.classes, arguments.out, arguments.resolution)
 
 
 if __name__ == "__main__":
