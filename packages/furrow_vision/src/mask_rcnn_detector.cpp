@@ -17,9 +17,10 @@ constexpr int kMaskCells = 14;
 
 struct Region {
   RegionBox box;
-  float score = 0.0f;                ///< 1 - p(background)
-  std::vector<double> class_scores;  ///< of the classes, given a plant
-  int best = 0;                      ///< class
+  float score = 0.0f;                              ///< 1 - p(background)
+  std::vector<double> class_scores;                ///< of the classes, given a plant
+  int best = 0;                                    ///< class
+  Eigen::Vector2d stem = Eigen::Vector2d::Zero();  ///< where the model tells stems
 };
 
 bool is_table(const cv::Mat& m, int rows) {
@@ -80,6 +81,7 @@ class MaskRcnnDetector::Implementation {
     for (std::int64_t i = 0; i < model_.feature_levels; ++i) {
       outputs_.push_back("features_" + std::to_string(i));
     }
+    if (model_.stems) head_outputs_.push_back("stems");
     // Networks that do not fit the model file are found here and not in the field.
     constexpr int kProbe_px = 128;
     const cv::Size size(kProbe_px, kProbe_px);
@@ -170,22 +172,31 @@ class MaskRcnnDetector::Implementation {
   Result<std::vector<Region>> classify(const Pyramid& maps, const std::vector<RegionBox>& boxes,
                                        cv::Size input) {
     if (boxes.empty()) return std::vector<Region>();
-    const auto outputs = box_head_.run(cut(maps, boxes, kBoxCells), {"class_logits", "box_deltas"});
+    const auto outputs = box_head_.run(cut(maps, boxes, kBoxCells), head_outputs_);
     if (!outputs.ok()) return outputs.error();
     const cv::Mat &logits = (*outputs)[0], &deltas = (*outputs)[1];
+    const cv::Mat& stems = outputs->back();
     const int classes = static_cast<int>(model_.classes.size());
     const int rows = static_cast<int>(boxes.size());
     if (!is_table(logits, rows) || logits.cols != 1 + classes || !is_table(deltas, rows) ||
         (deltas.cols != 4 && deltas.cols != 4 * (1 + classes))) {
       return Error{ErrorCode::kInvalidArgument, "the box head is of other classes"};
     }
-    if (!cv::checkRange(logits) || !cv::checkRange(deltas)) {
+    if (model_.stems && (!is_table(stems, rows) || stems.cols != 2)) {
+      return Error{ErrorCode::kInvalidArgument, "the box head's stems are not two values a region"};
+    }
+    if (!cv::checkRange(logits) || !cv::checkRange(deltas) || !cv::checkRange(stems)) {
       return Error{ErrorCode::kInvalidArgument, "the box head's output is not finite"};
     }
     std::vector<Region> candidates;
     for (int i = 0; i < rows; ++i) {
       Region region = scores_of(logits.ptr<float>(i), classes);
       if (region.score < static_cast<float>(parameters_.score_min)) continue;
+      if (model_.stems) {
+        const float* off = stems.ptr<float>(i);
+        region.stem = {boxes[i].u0 + (0.5 + off[0]) * boxes[i].width(),
+                       boxes[i].v0 + (0.5 + off[1]) * boxes[i].height()};
+      }
       const float* d = deltas.ptr<float>(i) + (deltas.cols == 4 ? 0 : 4 * (1 + region.best));
       region.box = clip_box(
           decode_box(boxes[i], {d[0], d[1], d[2], d[3]}, {10.0f, 10.0f, 5.0f, 5.0f}), input);
@@ -217,18 +228,20 @@ class MaskRcnnDetector::Implementation {
     if (!outputs.ok()) return outputs.error();
     const cv::Mat& logits = (*outputs)[0];
     const int classes = static_cast<int>(model_.classes.size());
-    if (logits.dims != 4 || logits.type() != CV_32F || !logits.isContinuous() ||
-        logits.size[0] != static_cast<int>(regions.size()) ||
-        (logits.size[1] != classes && logits.size[1] != 1 + classes) || logits.size[2] < 2 ||
+    const bool fits = logits.dims == 4 && (logits.size[1] == 1 || logits.size[1] == classes ||
+                                           logits.size[1] == 1 + classes);
+    if (!fits || logits.type() != CV_32F || !logits.isContinuous() ||
+        logits.size[0] != static_cast<int>(regions.size()) || logits.size[2] < 2 ||
         logits.size[3] < 2) {
       return Error{ErrorCode::kInvalidArgument, "the mask head is of other classes"};
     }
     if (!cv::checkRange(logits.reshape(1, 1))) {
       return Error{ErrorCode::kInvalidArgument, "the mask head's output is not finite"};
     }
-    const int background = logits.size[1] - classes;
     for (std::size_t i = 0; i < regions.size(); ++i) {
-      const auto* map = logits.ptr<float>(static_cast<int>(i), regions[i].best + background);
+      const int channel =
+          logits.size[1] == 1 ? 0 : regions[i].best + (logits.size[1] == classes ? 0 : 1);
+      const auto* map = logits.ptr<float>(static_cast<int>(i), channel);
       masks.push_back(
           cv::Mat(logits.size[2], logits.size[3], CV_32F, const_cast<float*>(map)).clone());
     }
@@ -273,9 +286,16 @@ class MaskRcnnDetector::Implementation {
       plant.crop_probability = crop_probability(plant.class_scores, model_.classes);
       plant.box_px = inner + extents[i].tl();
       plant.mask = own(inner).clone();
-      plant.stem_px = densest_place(plant.mask) + Eigen::Vector2d(plant.box_px.x, plant.box_px.y);
-      measure_instance(view, plant);
-      place_stem_on_ground(view, mask, plant);
+      if (model_.stems) {
+        const Eigen::Vector2d& stem = regions[i].stem;
+        plant.stem_px = {stem.x() * scale_u - 0.5, stem.y() * scale_v - 0.5};
+        measure_instance(view, plant);
+        set_stem_depth_to_ground(view, mask, plant);
+      } else {
+        plant.stem_px = densest_place(plant.mask) + Eigen::Vector2d(plant.box_px.x, plant.box_px.y);
+        measure_instance(view, plant);
+        place_stem_on_ground(view, mask, plant);
+      }
       if (plant.area_mm2 >= parameters_.min_plant_area_mm2) plants.push_back(std::move(plant));
     }
     return plants;
@@ -285,6 +305,7 @@ class MaskRcnnDetector::Implementation {
   ModelFile model_;
   Network backbone_, box_head_, mask_head_;
   std::vector<std::string> outputs_;
+  std::vector<std::string> head_outputs_ = {"class_logits", "box_deltas"};
 };
 
 void MaskRcnnParameters::visit(ParameterVisitor& v) {

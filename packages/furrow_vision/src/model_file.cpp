@@ -146,7 +146,7 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
   } else if (kind == "mask_rcnn") {
     model.kind = ModelFile::Kind::kMaskRcnn;
     parts = {"backbone", "box_head", "mask_head"};
-    known.insert({"anchors", "feature_levels"});
+    known.insert({"anchors", "feature_levels", "stems"});
   } else {
     throw Malformed{line_of(root["kind"]), "kind", "'" + kind + "' is not one_stage or mask_rcnn"};
   }
@@ -166,6 +166,11 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
   } else {
     model.anchors = anchors_of(root);
     model.feature_levels = number<int>(needed(root, "feature_levels"), "feature_levels", 1, 8);
+    if (const YAML::Node stems = root["stems"]; stems.IsDefined()) {
+      if (!stems.IsScalar() || !YAML::convert<bool>::decode(stems, model.stems)) {
+        throw Malformed{line_of(stems), "stems", "is not true or false"};
+      }
+    }
   }
   for (const std::string& name : parts) model.parts.push_back(part(root, name, folder));
   return model;

@@ -67,6 +67,29 @@ float bilinear(const float* plane, int rows, int columns, float v, float u) {
          b * ((1.0f - a) * lower[u0] + a * lower[u1]);
 }
 
+/// A place between two neighbouring cells of a line.
+struct Sample {
+  int low = 0, high = 0;
+  float low_weight = 0.0f, high_weight = 0.0f;
+};
+
+/// `count` places in the middle of equal parts of a length; beyond a cell outside the map they
+/// weigh nothing.
+std::vector<Sample> samples_along(float start, float length, int count, int cells) {
+  std::vector<Sample> samples(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    float at = start + (static_cast<float>(i) + 0.5f) * length / static_cast<float>(count);
+    if (!(at >= -1.0f && at <= static_cast<float>(cells))) continue;
+    at = std::clamp(at, 0.0f, static_cast<float>(cells - 1));
+    Sample& sample = samples[static_cast<std::size_t>(i)];
+    sample.low = static_cast<int>(at);
+    sample.high = std::min(sample.low + 1, cells - 1);
+    sample.high_weight = at - static_cast<float>(sample.low);
+    sample.low_weight = 1.0f - sample.high_weight;
+  }
+  return samples;
+}
+
 }  // namespace
 
 double region_iou(const RegionBox& a, const RegionBox& b) {
@@ -169,23 +192,29 @@ void align_region(const cv::Mat& features, const RegionBox& box, double stride_p
   constexpr int kSamples = 2;
   const auto scale = static_cast<float>(1.0 / stride_px);
   const int channels = features.size[1], rows = features.size[2], columns = features.size[3];
-  const float u0 = box.u0 * scale, v0 = box.v0 * scale;
-  const float bin_u = std::max(box.width() * scale, 1.0f) / static_cast<float>(size);
-  const float bin_v = std::max(box.height() * scale, 1.0f) / static_cast<float>(size);
+  // The places of the samples are those of every channel.
+  const std::vector<Sample> along_u =
+      samples_along(box.u0 * scale, std::max(box.width() * scale, 1.0f), kSamples * size, columns);
+  const std::vector<Sample> along_v =
+      samples_along(box.v0 * scale, std::max(box.height() * scale, 1.0f), kSamples * size, rows);
+  std::vector<float> lines(along_u.size());
   for (int c = 0; c < channels; ++c) {
     const float* plane = features.ptr<float>(0, c);
     for (int b = 0; b < size; ++b) {
+      std::fill(lines.begin(), lines.end(), 0.0f);
+      for (int y = kSamples * b; y < kSamples * (b + 1); ++y) {
+        const float* low = plane + static_cast<std::ptrdiff_t>(along_v[y].low) * columns;
+        const float* high = plane + static_cast<std::ptrdiff_t>(along_v[y].high) * columns;
+        for (std::size_t x = 0; x < along_u.size(); ++x) {
+          const Sample& u = along_u[x];
+          lines[x] +=
+              along_v[y].low_weight * (u.low_weight * low[u.low] + u.high_weight * low[u.high]) +
+              along_v[y].high_weight * (u.low_weight * high[u.low] + u.high_weight * high[u.high]);
+        }
+      }
       for (int a = 0; a < size; ++a) {
         float sum = 0.0f;
-        for (int y = 0; y < kSamples; ++y) {
-          const float v =
-              v0 + (static_cast<float>(b) + (static_cast<float>(y) + 0.5f) / kSamples) * bin_v;
-          for (int x = 0; x < kSamples; ++x) {
-            const float u =
-                u0 + (static_cast<float>(a) + (static_cast<float>(x) + 0.5f) / kSamples) * bin_u;
-            sum += bilinear(plane, rows, columns, v, u);
-          }
-        }
+        for (int x = kSamples * a; x < kSamples * (a + 1); ++x) sum += lines[x];
         *out++ = sum / (kSamples * kSamples);
       }
     }

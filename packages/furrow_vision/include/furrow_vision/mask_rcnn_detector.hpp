@@ -34,9 +34,11 @@ struct MaskRcnnParameters {
 ///             fewer)
 ///             -> `objectness_i` 1xAx.., `deltas_i` 1x4Ax.. for each level i of anchors
 ///   box_head  `regions` nxCx7x7 -> `class_logits` nx(1+K), background first; `box_deltas`
-///             nx4 or nx4(1+K), weighted by 10, 10, 5, 5
-///   mask_head `regions` nxCx14x14 -> `mask_logits` nxKxMxM or nx(1+K)xMxM
-/// Stems are the densest places of the masks, moved to the ground by the depth. Keeps no state.
+///             nx4 or nx4(1+K), weighted by 10, 10, 5, 5; where the model file says `stems: true`,
+///             `stems` nx2, from the region's centre to the stem in sizes of the region
+///   mask_head `regions` nxCx14x14 -> `mask_logits` nx1xMxM, nxKxMxM or nx(1+K)xMxM
+/// Without `stems` they are the densest places of the masks, moved to the ground by the depth.
+/// Keeps no state.
 class MaskRcnnDetector final : public Detector {
  public:
   /// Throws ConfigError as OneStageDetector does.

@@ -36,7 +36,8 @@ struct AnchorLayout {
 ///   classes: [{name: sugar_beet, kind: crop}, {name: pigweed, kind: weed}]   # crops first
 ///
 /// A mask_rcnn has `backbone`, `box_head` and `mask_head` in place of `network`, and for stride and
-/// offset_unit_px `anchors: {sizes_px: [], strides_px: [], aspect_ratios: []}` and feature_levels.
+/// offset_unit_px `anchors: {sizes_px: [], strides_px: [], aspect_ratios: []}` and feature_levels,
+/// and may say `stems: true`.
 struct ModelFile {
   enum class Kind { kOneStage, kMaskRcnn };
   Kind kind = Kind::kOneStage;
@@ -48,6 +49,7 @@ struct ModelFile {
   double offset_unit_px = 0.0;      ///< one_stage
   AnchorLayout anchors;             ///< mask_rcnn
   std::int64_t feature_levels = 0;  ///< mask_rcnn: from which regions are cut; strides 4, 8, ...
+  bool stems = false;               ///< mask_rcnn: the box head tells stems too
 };
 
 /// The largest network that is read.
