@@ -82,6 +82,8 @@ std::optional<std::int32_t> SimulatedDrive::read(std::uint16_t index, std::uint8
       return static_cast<std::int32_t>(std::lround(position_));
     case 0x606C:
       return static_cast<std::int32_t>(std::lround(velocity_));
+    case 0x6502:  // profile position, homing, and cyclic position where offered
+      return cyclic_offered_ ? 0xA1 : 0x21;
     case 0x60F4:
       return static_cast<std::int32_t>(std::lround(demand_ - position_));
     default:
@@ -96,7 +98,8 @@ SimulatedDrive::Answer SimulatedDrive::write(std::uint16_t index, std::uint8_t s
     return Answer::kOk;
   }
   if (index == 0x6060 && sub == 0) {
-    if (value != 1 && value != 6 && value != 8) return Answer::kBadValue;
+    const bool offered = value == 1 || value == 6 || (value == 8 && cyclic_offered_);
+    if (!offered) return Answer::kBadValue;
     mode_ = value;
     target_ = demand_;
     parameters_[{0x607A, 0}] = static_cast<std::int32_t>(std::lround(demand_));

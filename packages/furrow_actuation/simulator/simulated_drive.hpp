@@ -23,6 +23,8 @@ class SimulatedDrive {
   void clear_cause() { cause_lasts_ = false; }
   /// The reference switch is missing: homing ends with its error bit.
   void set_reference_missing(bool missing) { reference_missing_ = missing; }
+  /// Drives of the simpler kind know no cyclic positions.
+  void set_cyclic_offered(bool offered) { cyclic_offered_ = offered; }
   /// The axis does not follow.
   void set_jammed(bool jammed) { jammed_ = jammed; }
 
@@ -58,6 +60,7 @@ class SimulatedDrive {
   bool cause_lasts_ = false;
   bool reference_missing_ = false;
   bool jammed_ = false;
+  bool cyclic_offered_ = true;
   bool following_error_ = false;
   bool acknowledged_ = false;
   bool homing_ = false;

@@ -202,7 +202,8 @@ ControllerOutput AxisController::update(Time now, Duration period) {
   }
   if (mode_ == ControllerMode::kRunning || stopping) {
     const MotionState end = motion_at(now + period);
-    output.axis = {AxisCommandMode::kCyclic, end.position_m, end.velocity_mps};
+    output.axis = {AxisCommandMode::kCyclic, end.position_m, end.velocity_mps,
+                   profile_.final_state().position_m};
   } else if (reading_ && std::isfinite(reading_->position_m)) {
     profile_ = MotionProfile::standing(reading_->position_m);
     profile_start_ = now;

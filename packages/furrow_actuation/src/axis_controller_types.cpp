@@ -95,6 +95,12 @@ void AxisControllerParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 0.5},
           protection_radius_m);
+  v.visit({.name = "rest_speed_mps",
+           .unit = "m/s",
+           .description = "but in passing, no drop leaves before the axis is slower than this",
+           .min = 0.001,
+           .max = 5.0},
+          rest_speed_mps);
   v.visit({.name = "max_fire_speed_mps",
            .unit = "m/s",
            .description = "the axis moves no faster than this while the valve is open",

@@ -168,6 +168,12 @@ bool AxisController::fire_when_due(const PlannedStop& stop, const Aim& aim, bool
   if (last_close_ && (now - *last_close_).to_seconds() < parameters_.min_off_s) return false;
   const Time first = now + Duration::seconds(calibration_.open_delay_s);
   const Time middle = first + Duration::seconds(parameters_.dwell_s / 2.0);
+  if (!passing && std::abs(motion_at(first).velocity_mps) > parameters_.rest_speed_mps) {
+    // On its last millimetres: the spray may wait for as long as it still lands near enough.
+    const double behind_m =
+        aim.crossing.closing_speed_mps * (middle - aim.crossing.emission).to_seconds();
+    if (behind_m <= parameters_.placement_tolerance_m) return false;
+  }
   const Landing landing = predict_landing(middle);
   constexpr double kSpeedMargin = 1.01;
   if ((now - stop.observed).to_seconds() > parameters_.max_target_age_s) {

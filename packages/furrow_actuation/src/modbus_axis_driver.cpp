@@ -29,6 +29,7 @@ constexpr Object kHomingSearchSpeed{0x6099, 1, 4};
 constexpr Object kHomingCreepSpeed{0x6099, 2, 4};
 constexpr Object kHomingAcceleration{0x609A, 0, 4};
 constexpr Object kFollowingErrorValue{0x60F4, 0, 4};
+constexpr Object kSupportedModes{0x6502, 0, 4};
 
 Error unavailable(const char* why) {
   return {ErrorCode::kUnavailable, why};
@@ -147,6 +148,10 @@ Status ModbusAxisDriver::configure() {
   for (const auto& [object, value] : settings) {
     if (Status status = set(object, value); !status) return status;
   }
+  const auto modes = get(kSupportedModes);
+  if (!modes && lost_) return modes.error();
+  constexpr int kCyclicPositionBit = 7;
+  cyclic_offered_ = modes.ok() && (*modes >> kCyclicPositionBit & 1) != 0;
   return {};
 }
 
@@ -198,6 +203,7 @@ Result<std::int32_t> ModbusAxisDriver::exchange(const Telegram& request, const O
 Status ModbusAxisDriver::send_controlword(std::uint16_t word) {
   if (Status status = set(kControlword, word); !status) return status;
   controlword_ = word;
+  profile_target_.reset();
   return {};
 }
 
@@ -206,7 +212,21 @@ Status ModbusAxisDriver::ensure_mode(Mode mode) {
   if (mode_ == wanted) return {};
   if (Status status = set(kModeOfOperation, wanted); !status) return status;
   mode_ = wanted;
+  profile_target_.reset();
   return {};
+}
+
+Status ModbusAxisDriver::move_by_profile(double position_m) {
+  const std::int32_t target = counts(position_m);
+  if (Status status = ensure_mode(Mode::kProfilePosition); !status) return status;
+  if (profile_target_ == target) return {};
+  // A new set-point is taken on the rising edge of its bit.
+  constexpr std::uint16_t kBase = command::kEnableOperation | command::kChangeImmediately;
+  Status status = set(kTargetPosition, target);
+  if (status.ok()) status = send_controlword(kBase);
+  if (status.ok()) status = send_controlword(kBase | command::kNewSetpoint);
+  if (status.ok()) profile_target_ = target;
+  return status;
 }
 
 Status ModbusAxisDriver::read(Time now, Duration) {
@@ -288,30 +308,22 @@ Status ModbusAxisDriver::write(Time, Duration, const AxisCommand& command) {
   if (command.mode == AxisCommandMode::kStop) {
     return send_controlword(command::kEnableOperation | command::kHalt);
   }
-  if (!std::isfinite(command.position_m)) {
+  const bool cyclic = command.mode == AxisCommandMode::kCyclic && cyclic_offered_;
+  const double position_m =
+      cyclic ? command.position_m : command.target_m.value_or(command.position_m);
+  if (!std::isfinite(position_m)) {
     return Error{ErrorCode::kInvalidArgument, "the commanded position is not finite"};
   }
   constexpr double kTolerance_m = 1e-6;
-  if (command.position_m < limits_.lower_m - kTolerance_m ||
-      command.position_m > limits_.upper_m + kTolerance_m) {
+  if (position_m < limits_.lower_m - kTolerance_m || position_m > limits_.upper_m + kTolerance_m) {
     return Error{ErrorCode::kOutOfRange, "the commanded position lies outside the limits"};
   }
-  const bool cyclic = command.mode == AxisCommandMode::kCyclic;
-  Status mode = ensure_mode(cyclic ? Mode::kCyclicPosition : Mode::kProfilePosition);
-  if (!mode) return mode;
-  if (cyclic) {
-    if (controlword_ != command::kEnableOperation) {
-      Status status = send_controlword(command::kEnableOperation);
-      if (!status) return status;
-    }
-    return set(kTargetPosition, counts(command.position_m));
+  if (!cyclic) return move_by_profile(position_m);
+  if (Status status = ensure_mode(Mode::kCyclicPosition); !status) return status;
+  if (controlword_ != command::kEnableOperation) {
+    if (Status status = send_controlword(command::kEnableOperation); !status) return status;
   }
-  // A new set-point is taken on the rising edge of its bit.
-  constexpr std::uint16_t kBase = command::kEnableOperation | command::kChangeImmediately;
-  Status status = set(kTargetPosition, counts(command.position_m));
-  if (status.ok()) status = send_controlword(kBase);
-  if (status.ok()) status = send_controlword(kBase | command::kNewSetpoint);
-  return status;
+  return set(kTargetPosition, counts(position_m));
 }
 
 Status ModbusAxisDriver::enable(Time) {

@@ -4,7 +4,7 @@
 
 namespace furrow::actuation::testing {
 
-/// How often this program has called operator new so far.
+/// How often this thread has called operator new so far.
 [[nodiscard]] std::size_t allocations();
 
 }  // namespace furrow::actuation::testing

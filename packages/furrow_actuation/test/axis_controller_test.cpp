@@ -110,6 +110,28 @@ TEST(AxisController, PassingFiresOnTheMove) {
   EXPECT_LT((trip.rig.landed()[1].p_F - Eigen::Vector2d(0.8, 0.4)).norm(), 2e-3);
 }
 
+TEST(AxisController, ASprayWaitsForTheAxisToRestWhileItStillLandsNearEnough) {
+  int waited = 0;
+  int late = 0;
+  for (int i = 0; i < 60; ++i) {
+    Trip trip;
+    const Eigen::Vector2d second_F(0.5 + 0.11 + 5e-4 * i, 0.3);
+    trip.plan = {stop_at(1, {0.5, -0.3}, {}), stop_at(2, second_F, {})};
+    trip.run(1.5);
+    late += trip.count(ControllerEventKind::kStopSkipped);
+    if (trip.rig.landed().size() < 2) continue;
+    const testing::Landed& landed = trip.rig.landed()[1];
+    const Eigen::Vector2d off_F = landed.p_F - second_F;
+    EXPECT_LT(off_F.norm(), 0.009) << i;
+    waited += off_F.x() > 0.003 ? 1 : 0;
+    // At 0.05 m/s a drop is carried 2.5 mm aside while it falls.
+    EXPECT_LT(std::abs(landed.droplets_F.back().y() - landed.droplets_F.front().y()), 0.003) << i;
+  }
+  EXPECT_GT(waited, 0);
+  EXPECT_GT(late, 0);
+  EXPECT_LT(late, 40);
+}
+
 TEST(AxisController, SkipsForEachReason) {
   {
     Trip trip;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "../simulator/drive_server.hpp"
+#include "allocation_counter.hpp"
 #include "furrow_core/error.hpp"
 
 namespace furrow::actuation::cia402 {
@@ -173,6 +174,48 @@ TEST(ModbusAxis, EnablesHomesAndMovesInBothModes) {
   EXPECT_LT(wire.driver().reading().position_m, 0.55);
   ASSERT_TRUE(wire.driver().disable(wire.now()).ok());
   wire.run_until(AxisState::kDisabled);
+}
+
+TEST(ModbusAxis, ADriveWithoutCyclicPositionsGoesToTheEndOfTheMovement) {
+  Wire wire;
+  wire.at_drive([](SimulatedDrive& d) { d.set_cyclic_offered(false); });
+  wire.make_ready();
+  const auto way_to = [&](double target_m, int cycles) {
+    const double from_m = wire.driver().reading().position_m;
+    for (int i = 0; i < cycles; ++i) {
+      const double share = std::min(1.0, (i + 1) / 60.0);
+      wire.cycle({AxisCommandMode::kCyclic, from_m + share * (target_m - from_m), 0.0, target_m});
+      ASSERT_TRUE(wire.wrote);
+    }
+  };
+  way_to(0.3, 150);
+  EXPECT_EQ(wire.driver().reading().state, AxisState::kReady);
+  EXPECT_NEAR(wire.driver().reading().position_m, 0.3, 1e-3);
+  way_to(0.6, 20);  // a new target while it moves
+  ASSERT_EQ(wire.driver().reading().state, AxisState::kMoving);
+  way_to(-0.2, 300);
+  EXPECT_NEAR(wire.driver().reading().position_m, -0.2, 1e-3);
+  wire.cycle({AxisCommandMode::kCyclic, 0.0, 0.0, 0.7});
+  EXPECT_FALSE(wire.wrote);  // outside the limits
+  // Stopped, it goes on when the same target is given again.
+  way_to(0.5, 20);
+  wire.cycle({AxisCommandMode::kStop, 0.0, 0.0});
+  wire.run_until(AxisState::kReady);
+  EXPECT_LT(wire.driver().reading().position_m, 0.45);
+  way_to(0.5, 300);
+  EXPECT_NEAR(wire.driver().reading().position_m, 0.5, 1e-3);
+}
+
+TEST(ModbusAxis, ACycleAllocatesNothing) {
+  Wire wire;
+  wire.make_ready();
+  wire.cycle({AxisCommandMode::kCyclic, 0.0, 0.0, 0.0});
+  const std::size_t before = testing::allocations();
+  for (int i = 0; i < 200; ++i) {
+    wire.cycle({AxisCommandMode::kCyclic, 5e-4 * i, 0.0, 0.1});
+    ASSERT_TRUE(wire.wrote);
+  }
+  EXPECT_EQ(testing::allocations(), before);
 }
 
 TEST(ModbusAxis, RefusesWhatTheAxisCannotDo) {

@@ -73,6 +73,7 @@ class Ordeal {
     for (int cycle = 0; cycle < 1500; ++cycle) {
       if (send_plan_ && cycle % 50 == 0) send_plan();
       if (random_.bernoulli(0.01)) meddle();
+      if (rig_.send_odometry) odometry_ = rig_.now();
       rig_.step();
       check_cycle();
       if (::testing::Test::HasFatalFailure()) return;
@@ -105,6 +106,7 @@ class Ordeal {
       some.push_back(stop);
     }
     if (random_.bernoulli(0.1)) std::reverse(some.begin(), some.end());
+    planned_ = rig_.now();
     ASSERT_TRUE(controller().set_plan(rig_.now(), some).ok());
   }
 
@@ -189,6 +191,9 @@ class Ordeal {
     ASSERT_EQ(axis.output.mode, ControllerMode::kRunning);
     ASSERT_FALSE(emergency_stop_);
     ASSERT_FALSE(dry_run_ && open_cycles_ == 0);
+    const AxisControllerParameters deadlines;
+    ASSERT_LE((rig_.now() - planned_).to_seconds(), deadlines.plan_deadline_s + 2 * h);
+    ASSERT_LE((rig_.now() - odometry_).to_seconds(), deadlines.odometry_deadline_s + 2 * h);
     ASSERT_GT(rig_.base().twist_B.vx_mps, 0.0);
     ASSERT_LE(++open_cycles_, 16);  // dwell, in cycles of 2 ms, and one more
   }
@@ -226,6 +231,8 @@ class Ordeal {
   std::vector<ProtectedPlant> crops_;
   std::vector<PlannedStop> stops_;
   bool send_plan_ = true;
+  Time planned_;
+  Time odometry_;
   bool emergency_stop_ = false;
   bool dry_run_ = false;
   AxisState before_ = AxisState::kDisabled;

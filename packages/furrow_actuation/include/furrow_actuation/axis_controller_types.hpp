@@ -99,8 +99,9 @@ struct AxisControllerParameters {
   double dwell_s = 0.010;
   double min_off_s = 0.004;
   double late_slack_s = 0.010;
-  double placement_tolerance_m = 0.010;
+  double placement_tolerance_m = 0.008;
   double protection_radius_m = 0.030;
+  double rest_speed_mps = 0.05;
   double max_fire_speed_mps = 0.5;
   double plan_deadline_s = 2.0;
   double odometry_deadline_s = 0.10;

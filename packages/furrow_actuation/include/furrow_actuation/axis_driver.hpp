@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "furrow_core/result.hpp"
@@ -50,6 +51,8 @@ struct AxisCommand {
   AxisCommandMode mode = AxisCommandMode::kNone;
   double position_m = 0.0;
   double velocity_mps = 0.0;
+  /// With kCyclic: where the movement ends, for drives that can only go there by themselves.
+  std::optional<double> target_m;
 };
 
 /// One axis drive, called by a loop: read(), then decide, then write(), each cycle. Requests change

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "furrow_actuation/axis_driver.hpp"
@@ -29,6 +30,8 @@ struct ModbusAxisParameters {
 /// dryve D1 does. Each object is one exchange on the wire, bounded by timeout_s. A lost connection
 /// is kFault with kConnectionLost until reset(), which connects again; what the drive does then is
 /// its own matter (set its connection watchdog to stop it).
+/// A drive that does not offer cyclic positions (object 6502h) is sent to the end of the movement
+/// whenever that changes, by a profile of its own within the same limits.
 class ModbusAxisDriver final : public AxisDriver {
  public:
   /// Connects on the first read(). Throws ConfigError for bad limits or parameters.
@@ -60,6 +63,7 @@ class ModbusAxisDriver final : public AxisDriver {
   [[nodiscard]] Status set(const Object& object, std::int32_t value);
   [[nodiscard]] Status send_controlword(std::uint16_t word);
   [[nodiscard]] Status ensure_mode(Mode mode);
+  [[nodiscard]] Status move_by_profile(double position_m);
   void interpret(Time now);
   [[nodiscard]] std::int32_t counts(double meters) const;
   [[nodiscard]] bool powered() const;
@@ -72,6 +76,8 @@ class ModbusAxisDriver final : public AxisDriver {
   std::uint16_t statusword_ = 0;
   std::uint16_t controlword_ = 0;
   std::int32_t mode_ = 0;
+  std::optional<std::int32_t> profile_target_;  ///< where the drive is on its way to, in counts
+  bool cyclic_offered_ = false;
   bool lost_ = false;
   bool emergency_stop_ = false;
   bool homing_ = false;
