@@ -14,6 +14,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "spray_log.hpp"
 
 namespace furrow::components {
 namespace {
@@ -80,6 +81,8 @@ class AxisDriverComponent final : public graph::Component {
         controller_(axis_, parameters_.nozzle, parameters_.controller),
         driver_(make_axis_driver(parameters_.hardware, actuation::MotionLimits::of(axis_))),
         valve_(make_valve(parameters_.hardware)),
+        stop_input_(make_emergency_input(parameters_.hardware)),
+        sprays_(Duration::seconds(parameters_.nozzle.close_delay_s)),
         state_out_(context.output<topics::AxisState>()),
         event_out_(context.output<topics::AxisEvent>()),
         joint_out_(context.output<topics::JointStates>()),
@@ -96,7 +99,7 @@ class AxisDriverComponent final : public graph::Component {
     });
     context.input<topics::Tracks>([this](const auto& tracks) { protect(*tracks); });
     context.input<topics::EmergencyStop>(
-        [this](const auto& stop) { controller_.set_emergency_stop(stop->active()); });
+        [this](const auto& stop) { emergency_stop_ = stop->active(); });
     context.input<topics::ToolReset>([this](const auto& message) {
       if (message->axis().empty() || message->axis() == axis_.name) reset();
     });
@@ -167,6 +170,7 @@ class AxisDriverComponent final : public graph::Component {
       controller_.reset();
     }
     controller_.set_reading(driver_->reading());
+    controller_.set_emergency_stop(emergency_stop_ || (stop_input_ && stop_input_->pressed()));
     controller_.set_peer_lost(!last_heartbeat_ || now - *last_heartbeat_ > heartbeat_deadline_);
     const actuation::ControllerOutput output = controller_.update(now, period_);
     // First the valve, then the axis.
@@ -180,6 +184,7 @@ class AxisDriverComponent final : public graph::Component {
     cause_ = output.cause;
     cause_time_ = output.cause_time;
     for (std::size_t i = 0; i < output.events.size(); ++i) handle(output.events[i], valve_written);
+    if (auto spray = sprays_.sample(now, driver_->reading())) event_out_.publish(std::move(*spray));
     report_start(now);
   }
 
@@ -204,12 +209,10 @@ class AxisDriverComponent final : public graph::Component {
   void handle(const ControllerEvent& event, Time valve_written) {
     switch (event.kind) {
       case ControllerEventKind::kSprayOpened:
-        opened_ = event;
-        opened_->time = valve_written;
-        opened_velocity_mps_ = driver_->reading().velocity_mps;
+        opened(event, valve_written);
         break;
       case ControllerEventKind::kSprayClosed:
-        sprayed(event, valve_written);
+        closed(event, valve_written);
         break;
       case ControllerEventKind::kStopSkipped:
         context_.count("skipped_" + std::string(actuation::to_string(event.reason)));
@@ -237,23 +240,19 @@ class AxisDriverComponent final : public graph::Component {
     event_out_.publish(std::move(message));
   }
 
-  void sprayed(const ControllerEvent& closed, Time valve_written) {
-    if (!opened_) return;
-    const ControllerEvent opened = *std::exchange(opened_, std::nullopt);
-    context_.count("sprays");
+  void opened(const ControllerEvent& event, Time valve_written) {
     // A spray that was only acted out treats nothing.
-    auto message = to_msg(opened, opened.dry_run ? "dry_run" : "sprayed");
-    message.header(header(closed.time, kFieldFrame));
-    message.opened(graph::to_msg(opened.time));
-    message.closed(graph::to_msg(valve_written));
-    message.landing(to_point(closed.p_F));
-    const double open_s = opened.dry_run ? 0.0 : (valve_written - opened.time).to_seconds();
-    message.volume_ml(open_s * parameters_.nozzle.flow_mlps);
-    message.position_opened_m(opened.q_m);
-    message.velocity_opened_mps(opened_velocity_mps_);
-    message.position_closed_m(closed.q_m);
-    message.velocity_closed_mps(driver_->reading().velocity_mps);
-    event_out_.publish(std::move(message));
+    sprays_.open(to_msg(event, event.dry_run ? "dry_run" : "sprayed"), valve_written);
+  }
+
+  void closed(const ControllerEvent& event, Time valve_written) {
+    furrow_msgs::msg::AxisEvent* message = sprays_.opened();
+    if (message == nullptr) return;
+    context_.count("sprays");
+    message->landing(to_point(event.p_F));
+    const Duration open = valve_written - graph::from_msg(message->opened());
+    message->volume_ml(event.dry_run ? 0.0 : open.to_seconds() * parameters_.nozzle.flow_mlps);
+    sprays_.close(valve_written);
   }
 
   [[nodiscard]] furrow_msgs::msg::AxisEvent to_msg(const ControllerEvent& event,
@@ -306,6 +305,8 @@ class AxisDriverComponent final : public graph::Component {
   actuation::AxisController controller_;
   std::unique_ptr<actuation::AxisDriver> driver_;
   std::unique_ptr<actuation::ValveDriver> valve_;
+  std::unique_ptr<actuation::EmergencyInput> stop_input_;  ///< null: there is none
+  SprayLog sprays_;
   actuation::DriveSupervisor supervisor_;
   graph::Output<topics::AxisState> state_out_;
   graph::Output<topics::AxisEvent> event_out_;
@@ -320,8 +321,7 @@ class AxisDriverComponent final : public graph::Component {
   std::vector<actuation::PlannedStop> stops_;
   std::vector<actuation::ProtectedPlant> protected_;
   double base_x_m_ = 0.0;
-  std::optional<ControllerEvent> opened_;
-  double opened_velocity_mps_ = 0.0;
+  bool emergency_stop_ = false;
   actuation::ControllerMode mode_ = actuation::ControllerMode::kWaiting;
   actuation::SafetyCause cause_ = actuation::SafetyCause::kNone;
   Time cause_time_;

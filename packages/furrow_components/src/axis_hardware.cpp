@@ -29,6 +29,13 @@ void AxisHardwareParameters::visit(ParameterVisitor& v) {
   coil.visit(coil_visitor);
   PrefixedVisitor gpio_visitor(v, "gpio_");
   gpio.visit(gpio_visitor);
+  v.visit({.name = "stop_input",
+           .description = "an emergency stop beside the topic; gpio: a line of this computer "
+                          "(stop_gpio_*)",
+           .choices = {"none", "gpio"}},
+          stop_input);
+  PrefixedVisitor stop_visitor(v, "stop_gpio_");
+  stop.visit(stop_visitor);
 }
 
 std::unique_ptr<actuation::AxisDriver> make_axis_driver(const AxisHardwareParameters& parameters,
@@ -49,6 +56,13 @@ std::unique_ptr<actuation::ValveDriver> make_valve(const AxisHardwareParameters&
                                                   low);
   }
   return std::make_unique<SimulatedElsewhere>();
+}
+
+std::unique_ptr<actuation::EmergencyInput> make_emergency_input(
+    const AxisHardwareParameters& parameters) {
+  if (parameters.stop_input != "gpio") return nullptr;
+  return std::make_unique<actuation::EmergencyInput>(actuation::open_gpio_input(parameters.stop),
+                                                     parameters.stop.released_high);
 }
 
 }  // namespace furrow::components

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "furrow_actuation/emergency_input.hpp"
 #include "furrow_actuation/gpio_valve.hpp"
 #include "furrow_actuation/modbus_axis_driver.hpp"
 #include "furrow_actuation/modbus_coil_valve.hpp"
@@ -10,7 +11,7 @@
 
 namespace furrow::components {
 
-/// Which drive moves an axis and what its valve is wired to.
+/// Which drive moves an axis, and what its valve and an emergency stop are wired to.
 struct AxisHardwareParameters {
   std::string driver = "simulated";
   std::string valve = "simulated";
@@ -18,6 +19,8 @@ struct AxisHardwareParameters {
   actuation::cia402::ModbusAxisParameters drive;
   actuation::ModbusCoilParameters coil;
   actuation::GpioValveParameters gpio;
+  std::string stop_input = "none";
+  actuation::EmergencyInputParameters stop;
 
   void visit(ParameterVisitor& v);
 };
@@ -28,6 +31,9 @@ struct AxisHardwareParameters {
 /// Throws ConfigError. A simulated valve takes its level and does nothing: where it sprays, the
 /// robot's simulator works out from the driver's events.
 [[nodiscard]] std::unique_ptr<actuation::ValveDriver> make_valve(
+    const AxisHardwareParameters& parameters);
+/// Null when there is none. Throws ConfigError.
+[[nodiscard]] std::unique_ptr<actuation::EmergencyInput> make_emergency_input(
     const AxisHardwareParameters& parameters);
 
 }  // namespace furrow::components

@@ -1,20 +1,18 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_components/georeference.hpp"
-#include "furrow_components/pose_buffer.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_simulation/robot_motion.hpp"
 #include "furrow_simulation/sensors.hpp"
 #include "furrow_simulation/spray.hpp"
+#include "spray_landing.hpp"
 
 namespace furrow::components {
 namespace {
@@ -121,12 +119,12 @@ class RobotSimulator final : public graph::Component {
   explicit RobotSimulator(graph::Context& context)
       : context_(context),
         parameters_(context.parameters<Parameters>()),
-        tool_(geometry::load_tool_model(parameters_.tool_file)),
+        landing_(context, geometry::load_tool_model(parameters_.tool_file), parameters_.spray,
+                 Duration::seconds(2.0 / parameters_.rate_hz)),
         truth_(context.output<topics::TrueOdometry>()),
         wheels_out_(context.output<topics::WheelOdometry>()),
         imu_out_(context.output<topics::Imu>()),
         gnss_out_(context.output<topics::GnssFix>()),
-        spray_out_(context.output<topics::TrueSpray>()),
         status_out_(context.output<topics::RunStatus>()),
         georeference_(parameters_.georeference),
         wheel_(parameters_.wheel, context.seed()),
@@ -134,14 +132,10 @@ class RobotSimulator final : public graph::Component {
         gnss_(parameters_.gnss, context.seed()),
         length_m_(parameters_.length_m) {
     parameters_.motion.start_x_m = -parameters_.run_in_m;
-    for (std::size_t i = 0; i < tool_.axes.size(); ++i) {
-      valves_.emplace(tool_.axes[i].name,
-                      simulation::SimulatedValve(parameters_.spray, context.seed(), i));
-    }
     context.input<topics::TrueField>([this](const auto& field) {
       length_m_ = std::min(parameters_.length_m, field->length_m());
     });
-    context.input<topics::AxisEvent>([this](const auto& event) { open_valve(*event); });
+    context.input<topics::AxisEvent>([this](const auto& event) { landing_.take(*event); });
     context.every(Duration::seconds(1.0 / parameters_.rate_hz), [this](Time now) { step(now); });
     context.every(Duration::seconds(1.0 / parameters_.imu_rate_hz),
                   [this](Time now) { measure_turning(now); });
@@ -150,14 +144,6 @@ class RobotSimulator final : public graph::Component {
   }
 
  private:
-  /// A spray whose last drop has not left the nozzle yet.
-  struct Falling {
-    furrow_msgs::msg::AxisEvent event;
-    Time open;
-    Time close;
-    const geometry::AxisModel* axis;
-  };
-
   void step(Time now) {
     if (motion_ == nullptr) {
       motion_ = std::make_unique<simulation::RobotMotion>(parameters_.motion, context_.seed(), now);
@@ -165,10 +151,10 @@ class RobotSimulator final : public graph::Component {
       last_ = now;
     }
     const simulation::RobotState& state = motion_->advance_to(now);
-    const BaseOdometry truth{now, state.X_FB, state.speed_mps, state.yaw_rate_radps};
-    if (const Status added = truth_buffer_.add(truth); !added.ok()) return;
-    truth_.publish(to_msg(truth, kFieldFrame));
-    land_what_has_left(now);
+    nav_msgs::msg::Odometry truth =
+        to_msg(BaseOdometry{now, state.X_FB, state.speed_mps, state.yaw_rate_radps}, kFieldFrame);
+    if (!landing_.move(truth)) return;
+    truth_.publish(std::move(truth));
 
     const simulation::WheelReading reading = wheel_.measure(state);
     reckon(reading, now);
@@ -249,88 +235,13 @@ class RobotSimulator final : public graph::Component {
     status_out_.publish(std::move(status));
   }
 
-  void open_valve(const furrow_msgs::msg::AxisEvent& event) {
-    if (event.event() != "sprayed") return;
-    const auto axis = std::ranges::find(tool_.axes, event.axis(), &geometry::AxisModel::name);
-    if (axis == tool_.axes.end()) {
-      context_.count("events_of_unknown_axes");
-      return;
-    }
-    const auto window =
-        valves_.at(event.axis())
-            .actuate(graph::from_msg(event.opened()), graph::from_msg(event.closed()));
-    if (!window || !window->close) {
-      context_.count("openings_without_spray");
-      return;
-    }
-    constexpr std::size_t kMostAtOnce = 1000;
-    if (falling_.size() == kMostAtOnce) {
-      context_.count("sprays_beyond_the_limit");
-      return;
-    }
-    falling_.push_back({event, window->open, *window->close, &*axis});
-  }
-
-  /// Where a spray lands is known when its last drop has left: the robot drives on until then.
-  void land_what_has_left(Time now) {
-    const auto has_left = [now](const Falling& spray) { return spray.close <= now; };
-    for (const Falling& spray : falling_) {
-      if (has_left(spray)) land(spray);
-    }
-    std::erase_if(falling_, has_left);
-  }
-
-  void land(const Falling& spray) {
-    const auto& event = spray.event;
-    const auto at_open = nozzle(*spray.axis, spray.open, graph::from_msg(event.opened()),
-                                event.position_opened_m(), event.velocity_opened_mps());
-    const auto at_close = nozzle(*spray.axis, spray.close, graph::from_msg(event.closed()),
-                                 event.position_closed_m(), event.velocity_closed_mps());
-    if (!at_open || !at_close) {
-      context_.count("sprays_outside_the_memory");
-      return;
-    }
-    const geometry::NozzleModel& model = spray.axis->nozzle;
-    publish(event, simulation::spray_patch(*at_open, *at_close, model.height_m, parameters_.spray),
-            model.footprint_radius_m);
-  }
-
-  void publish(const furrow_msgs::msg::AxisEvent& event, const simulation::SprayPatch& patch,
-               double radius_m) const {
-    furrow_msgs::msg::TrueSpray spray;
-    spray.header(header(patch.time, kFieldFrame));
-    spray.axis(event.axis());
-    spray.stop_id(event.stop_id());
-    spray.track_ids(event.track_ids());
-    spray.aim(event.aim());
-    spray.centre(to_point(patch.p_F_m));
-    spray.radius_m(radius_m);
-    spray_out_.publish(std::move(spray));
-  }
-
-  // The nozzle over the true ground, when the axis was at `q_m` at the time of the command.
-  [[nodiscard]] std::optional<simulation::NozzleState> nozzle(const geometry::AxisModel& axis,
-                                                              Time time, Time commanded, double q_m,
-                                                              double qd_mps) const {
-    const auto base = truth_buffer_.at(time, Duration::seconds(2.0 / parameters_.rate_hz));
-    if (!base.ok()) return std::nullopt;
-    const double moved_q_m = q_m + qd_mps * (time - commanded).to_seconds();
-    const Eigen::Vector2d p_B = axis.nozzle_position_B(moved_q_m).head<2>();
-    const Eigen::Vector2d v_B = Eigen::Vector2d(base->speed_mps, 0.0) +
-                                base->yaw_rate_radps * Eigen::Vector2d(-p_B.y(), p_B.x()) +
-                                qd_mps * axis.direction_B.head<2>();
-    const Eigen::Rotation2Dd R_FB(base->X_FB.heading_rad);
-    return simulation::NozzleState{time, geometry::transform(base->X_FB, p_B), R_FB * v_B};
-  }
-
   graph::Context& context_;
   Parameters parameters_;
-  geometry::ToolModel tool_;
+  SprayLanding landing_;
   graph::Output<topics::TrueOdometry> truth_;
   graph::Output<topics::WheelOdometry> wheels_out_;
   graph::Output<topics::Imu> imu_out_;
   graph::Output<topics::GnssFix> gnss_out_;
-  graph::Output<topics::TrueSpray> spray_out_;
   graph::Output<topics::RunStatus> status_out_;
   Georeference georeference_;
   simulation::WheelOdometry wheel_;
@@ -338,9 +249,6 @@ class RobotSimulator final : public graph::Component {
   simulation::Gnss gnss_;
   std::deque<simulation::GnssReading> positions_;  ///< measured, not yet handed out
   std::unique_ptr<simulation::RobotMotion> motion_;
-  PoseBuffer truth_buffer_{Duration::seconds(2.0)};
-  std::map<std::string, simulation::SimulatedValve> valves_;
-  std::vector<Falling> falling_;
   geometry::Pose2 reckoned_;
   Time last_;
   double length_m_ = 0.0;

@@ -261,6 +261,13 @@ TEST(AxisDriverComponent, AValveThatCannotBeReachedIsAFault) {
   EXPECT_TRUE(world.events_named("sprayed").empty());
 }
 
+TEST(AxisDriverComponent, AnEmergencyStopInputThatIsNotThereIsAConfigurationError) {
+  World world;
+  EXPECT_THROW(run(world, {{"stop_input", std::string("gpio")},
+                           {"stop_gpio_chip", std::string("no_such_chip")}}),
+               ConfigError);
+}
+
 TEST(AxisDriverComponent, ADriveThatCannotBeReachedIsWaitedFor) {
   World world;
   run(world, {{"driver", std::string("cia402_modbus")}, {"drive_port", std::int64_t{9}}});

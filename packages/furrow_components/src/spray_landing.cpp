@@ -1,0 +1,102 @@
+#include "spray_landing.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_graph/stamp.hpp"
+
+namespace furrow::components {
+
+SprayLanding::SprayLanding(graph::Context& context, geometry::ToolModel tool,
+                           const simulation::SprayParameters& parameters, Duration odometry_gap)
+    : context_(context),
+      tool_(std::move(tool)),
+      parameters_(parameters),
+      odometry_gap_(odometry_gap),
+      out_(context.output<msgs::topics::TrueSpray>()) {
+  for (std::size_t i = 0; i < tool_.axes.size(); ++i) {
+    valves_.emplace(tool_.axes[i].name, simulation::SimulatedValve(parameters_, context.seed(), i));
+  }
+}
+
+void SprayLanding::take(const furrow_msgs::msg::AxisEvent& event) {
+  if (event.event() != "sprayed") return;
+  const auto axis = std::ranges::find(tool_.axes, event.axis(), &geometry::AxisModel::name);
+  if (axis == tool_.axes.end()) {
+    context_.count("events_of_unknown_axes");
+    return;
+  }
+  const auto window =
+      valves_.at(event.axis())
+          .actuate(graph::from_msg(event.opened()), graph::from_msg(event.closed()));
+  if (!window || !window->close) {
+    context_.count("openings_without_spray");
+    return;
+  }
+  constexpr std::size_t kMostAtOnce = 1000;
+  if (falling_.size() == kMostAtOnce) {
+    context_.count("sprays_beyond_the_limit");
+    return;
+  }
+  falling_.push_back({event, window->open, *window->close, &*axis});
+}
+
+// Where a spray lands is known when its last drop has left: the robot drives on until then.
+bool SprayLanding::move(const nav_msgs::msg::Odometry& truth) {
+  const BaseOdometry base = from_msg(truth);
+  if (!truth_.add(base).ok()) return false;
+  const auto has_left = [now = base.stamp](const Falling& spray) { return spray.close <= now; };
+  for (const Falling& spray : falling_) {
+    if (has_left(spray)) land(spray);
+  }
+  std::erase_if(falling_, has_left);
+  return true;
+}
+
+void SprayLanding::land(const Falling& spray) {
+  const auto& event = spray.event;
+  // The driver measured its axis this long after each command.
+  const Time closed = graph::from_msg(event.closed());
+  const Duration delay = graph::from_msg(event.header().stamp()) - closed;
+  const AxisPoint first{graph::from_msg(event.opened()) + delay, event.position_opened_m(),
+                        event.velocity_opened_mps()};
+  const AxisPoint last{closed + delay, event.position_closed_m(), event.velocity_closed_mps()};
+  const auto at_open = nozzle(*spray.axis, axis_at(first, last, spray.open));
+  const auto at_close = nozzle(*spray.axis, axis_at(first, last, spray.close));
+  if (!at_open || !at_close) {
+    context_.count("sprays_outside_the_memory");
+    return;
+  }
+  const geometry::NozzleModel& model = spray.axis->nozzle;
+  publish(event, simulation::spray_patch(*at_open, *at_close, model.height_m, parameters_),
+          model.footprint_radius_m);
+}
+
+void SprayLanding::publish(const furrow_msgs::msg::AxisEvent& event,
+                           const simulation::SprayPatch& patch, double radius_m) const {
+  furrow_msgs::msg::TrueSpray spray;
+  spray.header(header(patch.time, kFieldFrame));
+  spray.axis(event.axis());
+  spray.stop_id(event.stop_id());
+  spray.track_ids(event.track_ids());
+  spray.aim(event.aim());
+  spray.centre(to_point(patch.p_F_m));
+  spray.radius_m(radius_m);
+  out_.publish(std::move(spray));
+}
+
+// The nozzle over the true ground.
+std::optional<simulation::NozzleState> SprayLanding::nozzle(const geometry::AxisModel& model,
+                                                            const AxisPoint& axis) const {
+  const auto base = truth_.at(axis.time, odometry_gap_);
+  if (!base.ok()) return std::nullopt;
+  const Eigen::Vector2d p_B = model.nozzle_position_B(axis.position_m).head<2>();
+  const Eigen::Vector2d v_B = Eigen::Vector2d(base->speed_mps, 0.0) +
+                              base->yaw_rate_radps * Eigen::Vector2d(-p_B.y(), p_B.x()) +
+                              axis.velocity_mps * model.direction_B.head<2>();
+  const Eigen::Rotation2Dd R_FB(base->X_FB.heading_rad);
+  return simulation::NozzleState{axis.time, geometry::transform(base->X_FB, p_B), R_FB * v_B};
+}
+
+}  // namespace furrow::components

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "furrow_components/axis_trace.hpp"
+#include "furrow_components/pose_buffer.hpp"
+#include "furrow_geometry/tool_model.hpp"
+#include "furrow_graph/context.hpp"
+#include "furrow_msgs/furrow_msgs.h"
+#include "furrow_simulation/spray.hpp"
+
+namespace furrow::components {
+
+/// Lets what the valves release fall to the ground under a robot that moves on, and publishes where
+/// it lands.
+class SprayLanding {
+ public:
+  /// `odometry_gap`: how far the truth may be extrapolated. The context must outlive it.
+  SprayLanding(graph::Context& context, geometry::ToolModel tool,
+               const simulation::SprayParameters& parameters, Duration odometry_gap);
+
+  /// A valve was opened and closed, when the event says so.
+  void take(const furrow_msgs::msg::AxisEvent& event);
+  /// The true motion, in order of time; then what has left its nozzle by then lands. False when the
+  /// odometry is refused.
+  bool move(const nav_msgs::msg::Odometry& truth);
+
+ private:
+  /// A spray whose last drop has not left the nozzle yet.
+  struct Falling {
+    furrow_msgs::msg::AxisEvent event;
+    Time open;
+    Time close;
+    const geometry::AxisModel* axis;
+  };
+
+  void land(const Falling& spray);
+  void publish(const furrow_msgs::msg::AxisEvent& event, const simulation::SprayPatch& patch,
+               double radius_m) const;
+  [[nodiscard]] std::optional<simulation::NozzleState> nozzle(const geometry::AxisModel& model,
+                                                              const AxisPoint& axis) const;
+
+  graph::Context& context_;
+  geometry::ToolModel tool_;
+  simulation::SprayParameters parameters_;
+  Duration odometry_gap_;
+  graph::Output<msgs::topics::TrueSpray> out_;
+  PoseBuffer truth_{Duration::seconds(2.0)};
+  std::map<std::string, simulation::SimulatedValve> valves_;
+  std::vector<Falling> falling_;
+};
+
+}  // namespace furrow::components

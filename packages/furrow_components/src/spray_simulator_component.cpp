@@ -1,0 +1,62 @@
+#include <memory>
+#include <string>
+
+#include "furrow_graph/registry.hpp"
+#include "furrow_msgs/nav_msgs.h"
+#include "spray_landing.hpp"
+
+namespace furrow::components {
+namespace {
+
+namespace topics = msgs::topics;
+
+struct Parameters {
+  std::string tool_file;
+  double rate_hz = 100.0;
+  simulation::SprayParameters spray;
+
+  void visit(ParameterVisitor& v) {
+    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
+    v.visit({.name = "rate_hz",
+             .unit = "Hz",
+             .description = "of the true odometry",
+             .min = 1.0,
+             .max = 1000.0},
+            rate_hz);
+    PrefixedVisitor spray_visitor(v, "spray_");
+    spray.visit(spray_visitor);
+  }
+};
+
+/// Where sprays land beside a recorded motion; without a recorded truth it tells nothing.
+class SpraySimulator final : public graph::Component {
+ public:
+  static void describe(graph::Description& d) {
+    d.doc("Simulated valves and drops over the true motion of a recording: where sprays land.")
+        .parameters<Parameters>()
+        .input<topics::TrueOdometry>(graph::Need::kOptional)
+        .input<topics::AxisEvent>(graph::Need::kOptional)
+        .output<topics::TrueSpray>();
+  }
+
+  explicit SpraySimulator(graph::Context& context)
+      : parameters_(context.parameters<Parameters>()),
+        landing_(context, geometry::load_tool_model(parameters_.tool_file), parameters_.spray,
+                 Duration::seconds(2.0 / parameters_.rate_hz)) {
+    context.input<topics::TrueOdometry>([this, &context](const auto& truth) {
+      if (!landing_.move(*truth)) context.count("bad_odometry");
+    });
+    context.input<topics::AxisEvent>([this](const auto& event) { landing_.take(*event); });
+  }
+
+ private:
+  Parameters parameters_;
+  SprayLanding landing_;
+};
+
+}  // namespace
+}  // namespace furrow::components
+
+extern "C" void furrow_register(furrow::graph::Registry& registry) {
+  registry.add<furrow::components::SpraySimulator>("spray_simulator");
+}
