@@ -24,11 +24,14 @@ struct EvaluateOptions {
   std::int64_t images = 40;
   std::int64_t limit = 0;
   std::uint64_t seed = 900001;
+  std::string species;
   std::string json;
   std::string html;
 };
 
-constexpr std::size_t kBestPictures = 1, kWorstPictures = 2;
+constexpr std::size_t kBestPictures = 2, kWorstPictures = 3;
+/// Of an image with fewer plants there is little to see.
+constexpr std::size_t kLeastPlants = 5;
 
 /// Truth on the left, what was found on the right.
 std::string picture_of(const vision::AnnotatedImage& image,
@@ -119,7 +122,8 @@ void evaluate_on(EvaluationSet set, std::vector<NamedDetector>& detectors,
         throw std::runtime_error(image.path.string() + ": " + found.error().message);
       }
       const double miou = running[k].evaluation.add(image, *found, loaded->camera);
-      if (!options.html.empty() && running[k].gallery.wants(miou)) {
+      if (!options.html.empty() && image.instances.size() >= kLeastPlants &&
+          running[k].gallery.wants(miou)) {
         running[k].gallery.add({.dataset = set.name,
                                 .detector = detectors[k].name,
                                 .file = image.path.filename().string(),
@@ -160,7 +164,8 @@ void evaluate(const EvaluateOptions& options) {
   for (const std::string& dataset : options.datasets) {
     if (dataset == "rendered") {
       const ScratchFolder scratch;
-      evaluate_on(render_evaluation_set(scratch.path(), options.images, {640, 480}, options.seed),
+      evaluate_on(render_evaluation_set(scratch.path(), options.images, {640, 480}, options.seed,
+                                        options.species),
                   detectors, options, report);
     } else {
       evaluate_on(open_evaluation_set(dataset), detectors, options, report);
@@ -189,6 +194,11 @@ void add_eval_vision_command(CLI::App& app, int& /*exit_code*/) {
   vision->add_option("--limit", options->limit, "images of each set; 0: all")
       ->check(CLI::NonNegativeNumber);
   vision->add_option("--seed", options->seed, "of the rendered set")->capture_default_str();
+  vision
+      ->add_option("--species", options->species,
+                   "file of the species of the rendered set, in place of "
+                   "params/species_evaluation.yaml")
+      ->check(CLI::ExistingFile);
   vision->add_option("--json", options->json, "file of the results");
   vision->add_option("--html", options->html, "file of the report");
   vision->callback([options] { evaluate(*options); });

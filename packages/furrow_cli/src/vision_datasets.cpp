@@ -43,13 +43,18 @@ ScratchFolder::~ScratchFolder() {
 }
 
 EvaluationSet render_evaluation_set(const fs::path& folder, std::int64_t images, cv::Size size,
-                                    std::uint64_t seed) {
+                                    std::uint64_t seed, const fs::path& species_file) {
   components::RenderedDatasetParameters parameters;
   parameters.images = images;
   parameters.width_px = size.width;
   parameters.height_px = size.height;
   parameters.depth = true;
-  const auto species = components::load_species(share_folder() / "params" / "species.yaml");
+  const auto species = components::load_species(
+      species_file.empty() ? share_folder() / "params" / "species_evaluation.yaml" : species_file);
+  // Not the equal shares of training sets: the first species are the most frequent.
+  for (std::size_t i = 0; i < species.names(field::PlantKind::kWeed).size(); ++i) {
+    parameters.weed_shares.push_back(1.0 / (1.0 + 0.25 * static_cast<double>(i)));
+  }
   ProgressBar bar("rendering");
   const Status done =
       components::render_dataset(parameters, species, seed, folder, [&](std::int64_t count) {

@@ -28,10 +28,12 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// `images` pictures of this size with depth, drawn from `seed`, written into `folder`. Throws.
+/// `images` pictures of this size with depth, drawn from `seed` with the plants of a species file
+/// (empty: params/species_evaluation.yaml) in a mix of their own, written into `folder`. Throws.
 [[nodiscard]] EvaluationSet render_evaluation_set(const std::filesystem::path& folder,
                                                   std::int64_t images, cv::Size size,
-                                                  std::uint64_t seed);
+                                                  std::uint64_t seed,
+                                                  const std::filesystem::path& species_file = {});
 
 /// A folder of CWFID, of Carrot-Weed, or with a COCO file evaluation.json; or a COCO file. Throws
 /// ConfigError.

@@ -53,8 +53,14 @@ Shot draw_shot(const RenderedDatasetParameters& p, double length_m, Random& rand
   return shot;
 }
 
-field::FieldParameters draw_field(const RenderedDatasetParameters& p, Random& random) {
+field::FieldParameters draw_field(const RenderedDatasetParameters& p,
+                                  const field::SpeciesTable& species, Random& random) {
   field::FieldParameters field;
+  field.weed_species = species.names(field::PlantKind::kWeed);
+  field.weed_shares = p.weed_shares;
+  if (const auto crops = species.names(field::PlantKind::kCrop); !crops.empty()) {
+    field.crop_species = crops.front();
+  }
   field.length_m = 2.4;
   field.width_m = 2.4;
   // Densities spread evenly over the orders of magnitude.
@@ -127,41 +133,64 @@ Status write_image(const std::filesystem::path& path, const cv::Mat& image) {
   return {};
 }
 
-Result<vision::AnnotatedImage> render_one(const RenderedDatasetParameters& p,
-                                          const field::SpeciesTable& species, std::uint64_t seed,
-                                          std::int64_t index, const std::filesystem::path& folder) {
+/// The frames of one sequence; the last one is labelled.
+Result<std::vector<vision::AnnotatedImage>> render_sequence(const RenderedDatasetParameters& p,
+                                                            const field::SpeciesTable& species,
+                                                            std::uint64_t seed, std::int64_t index,
+                                                            const std::filesystem::path& folder) {
   Random random(seed, "dataset", static_cast<std::uint64_t>(index));
   const std::uint64_t image_seed = random.next();
-  auto field = field::generate_field(draw_field(p, random), species, image_seed);
+  auto field = field::generate_field(draw_field(p, species, random), species, image_seed);
   if (!field.ok()) return field.error();
-  const Shot shot = draw_shot(p, field->length_m, random);
+  const Shot last = draw_shot(p, field->length_m, random);
   // The generator centres the field on y = 0 already; x runs from 0.
   auto appearance = simulation::random_appearance(image_seed);
   appearance.threads = p.threads;
-  simulation::Renderer renderer(std::move(field).value(), appearance, image_seed);
-  const simulation::Frame frame = renderer.render(shot.camera, shot.X_FC, 0);
+  simulation::Renderer renderer(std::move(field).value(), appearance, image_seed, species);
 
-  char name[32];
-  std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(index));
-  vision::AnnotatedImage image;
-  image.path = folder / "images" / (std::string(name) + ".png");
-  image.width_px = frame.bgr.cols;
-  image.height_px = frame.bgr.rows;
-  image.instances = instances_of(frame, renderer.field());
-  image.X_FB = shot.X_FB;
-  image.velocity_mps = 0.0;
-  if (const Status written = write_image(image.path, frame.bgr); !written.ok()) {
-    return written.error();
-  }
-  if (p.depth) {
-    cv::Mat depth;
-    frame.depth_m.convertTo(depth, CV_16U, 1e4);
-    image.depth_path = folder / "depth" / (std::string(name) + ".png");
-    if (const Status written = write_image(image.depth_path, depth); !written.ok()) {
+  std::vector<vision::AnnotatedImage> images;
+  for (std::int64_t before = p.sequence_frames - 1; before >= 0; --before) {
+    Shot shot = last;
+    const double back_s = static_cast<double>(before) / p.frame_rate_hz;
+    const double back_m = back_s * p.velocity_mps;
+    const Eigen::Vector2d travel(std::cos(last.X_FB.heading_rad), std::sin(last.X_FB.heading_rad));
+    shot.X_FB.x_m -= back_m * travel.x();
+    shot.X_FB.y_m -= back_m * travel.y();
+    shot.X_FC.translation().head<2>() -= back_m * travel;
+    const simulation::Frame frame =
+        renderer.render(shot.camera, shot.X_FC, static_cast<std::uint64_t>(before));
+
+    char name[32];
+    std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(index));
+    std::string file = name;
+    vision::AnnotatedImage image;
+    image.width_px = frame.bgr.cols;
+    image.height_px = frame.bgr.rows;
+    image.X_FB = shot.X_FB;
+    image.velocity_mps = p.sequence_frames > 1 ? p.velocity_mps : 0.0;
+    image.labelled = before == 0;
+    if (image.labelled) image.instances = instances_of(frame, renderer.field());
+    if (p.sequence_frames > 1) {
+      image.sequence = name;
+      const double last_s = static_cast<double>(p.sequence_frames - 1) / p.frame_rate_hz;
+      image.stamp = Time::from_seconds(last_s - back_s);
+      if (!image.labelled) file += "_before_" + std::to_string(before);
+    }
+    image.path = folder / "images" / (file + ".png");
+    if (const Status written = write_image(image.path, frame.bgr); !written.ok()) {
       return written.error();
     }
+    if (p.depth) {
+      cv::Mat depth;
+      frame.depth_m.convertTo(depth, CV_16U, 1e4);
+      image.depth_path = folder / "depth" / (file + ".png");
+      if (const Status written = write_image(image.depth_path, depth); !written.ok()) {
+        return written.error();
+      }
+    }
+    images.push_back(std::move(image));
   }
-  return image;
+  return images;
 }
 
 }  // namespace
@@ -204,12 +233,34 @@ void RenderedDatasetParameters::visit(ParameterVisitor& v) {
            .min = 0.01,
            .max = 1000},
           weeds_per_m2_max);
+  v.visit({.name = "weed_shares",
+           .description = "one for each weed of the species table, in its order; empty: equal",
+           .min = 0.0,
+           .max = 1e6},
+          weed_shares);
   v.visit({.name = "crop_share", .description = "images with crop rows", .min = 0, .max = 1},
           crop_share);
   v.visit({.name = "validation_share", .description = "of the images", .min = 0, .max = 0.5},
           validation_share);
   v.visit({.name = "evaluation_share", .description = "of the images", .min = 0, .max = 0.5},
           evaluation_share);
+  v.visit({.name = "sequence_frames",
+           .description = "in a sequence whose last frame is labelled; 1: single images",
+           .min = 1,
+           .max = 100},
+          sequence_frames);
+  v.visit({.name = "velocity_mps",
+           .unit = "m/s",
+           .description = "of the robot within a sequence",
+           .min = 0.0,
+           .max = 5.0},
+          velocity_mps);
+  v.visit({.name = "frame_rate_hz",
+           .unit = "Hz",
+           .description = "within a sequence",
+           .min = 0.1,
+           .max = 100.0},
+          frame_rate_hz);
   v.visit({.name = "depth", .description = "write depth images too"}, depth);
   v.visit({.name = "threads", .description = "of the renderer", .min = 1, .max = 256}, threads);
 }
@@ -237,10 +288,10 @@ Status render_dataset(const RenderedDatasetParameters& parameters,
   const auto validation = static_cast<std::int64_t>(images * parameters.validation_share);
   const auto evaluation = static_cast<std::int64_t>(images * parameters.evaluation_share);
   for (std::int64_t i = 0; i < parameters.images; ++i) {
-    auto image = render_one(parameters, species, seed, i, folder);
-    if (!image.ok()) return image.error();
+    auto sequence = render_sequence(parameters, species, seed, i, folder);
+    if (!sequence.ok()) return sequence.error();
     const std::size_t part = i < evaluation ? 2 : i < evaluation + validation ? 1 : 0;
-    parts[part].images.push_back(std::move(image).value());
+    for (auto& image : *sequence) parts[part].images.push_back(std::move(image));
     progress(i + 1);
   }
   constexpr std::array kNames = {"train.json", "validation.json", "evaluation.json"};

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_core/result.hpp"
@@ -23,7 +24,11 @@ struct RenderedDatasetParameters {
   double yaw_max_rad = 0.08;
   double weeds_per_m2_min = 3.0;
   double weeds_per_m2_max = 80.0;
-  double crop_share = 0.85;  ///< images with a crop row
+  std::vector<double> weed_shares;  ///< beside the weeds of the species table; empty: equal
+  double crop_share = 0.85;         ///< images with a crop row
+  std::int64_t sequence_frames = 1;
+  double velocity_mps = 0.5;  ///< within a sequence
+  double frame_rate_hz = 5.0;
   double validation_share = 0.15;
   double evaluation_share = 0.15;
   bool depth = false;  ///< also write depth images
@@ -33,9 +38,11 @@ struct RenderedDatasetParameters {
 };
 
 /// Renders a data set of the structure of SB21 (Ahmadi et al. 2024): images/, annotations as COCO
-/// with stems and robot pose, split into train.json, validation.json and evaluation.json. The
-/// pictures and their order depend only on parameters, species and seed. `progress` is called with
-/// the number of images done. Fails with kIo, or with what the field generator refuses.
+/// with stems and robot pose, split into train.json, validation.json and evaluation.json. With
+/// sequence_frames above 1 each labelled image is the last of a sequence, whose frames before it
+/// carry pose and velocity and no labels. The pictures and their order depend only on parameters,
+/// species and seed. `progress` is called with the number of labelled images done. Fails with kIo,
+/// or with what the field generator refuses.
 [[nodiscard]] Status render_dataset(const RenderedDatasetParameters& parameters,
                                     const field::SpeciesTable& species, std::uint64_t seed,
                                     const std::filesystem::path& folder,
