@@ -39,7 +39,7 @@ std::vector<ledger::Tile> tiles(const std::vector<Pair>& pairs, const Rows& rows
     const Pair* best = nullptr;
     for (const Pair& pair : pairs) {
       if (pair.plain->field == field &&
-          (best == nullptr || pair.biodiversity->loss_pct < best->biodiversity->loss_pct)) {
+          (best == nullptr || pair.biodiversity->loss_pct <= best->biodiversity->loss_pct)) {
         best = &pair;
       }
     }
@@ -114,6 +114,24 @@ ledger::GroupedBarChart share_chart(const Rows& rows, const std::string& planner
   return chart;
 }
 
+LineChart cost_chart(const std::vector<Pair>& pairs, const Rows& rows, const std::string& view) {
+  LineChart chart;
+  chart.title = "Cost in weeds treated, " + view + " view";
+  chart.x_label = "weeds per m\xC2\xB2";
+  chart.y_label = "points";
+  chart.log_x = true;
+  chart.width_px = 600.0;
+  for (const std::string& planner : main_planners(rows)) {
+    LineChart::Series series{planner, planner_color(planner), {}, false};
+    for (const Pair& pair : pairs) {
+      if (pair.plain->view != view || planner_name(*pair.plain) != planner) continue;
+      series.points.push_back({pair.plain->weeds_per_m2, {pair.cost_points()}});
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
 ledger::GroupedBarChart paper_chart() {
   ledger::GroupedBarChart chart;
   chart.title = "paper (nOTSP, static division)";
@@ -171,19 +189,32 @@ std::string to_html(const BiodiversityExperiment& experiment, const Biodiversity
       "Treatment by priority",
       conditions(experiment.planner, experiment.setup, experiment.sampling, experiment.fields));
   page.tiles(tiles(pairs, rows));
-  const std::string& view = experiment.views.back();
-
   page.section(
       "By density",
       "Planned with weight 1.0 for weeds of high priority and 0.1 for those of low, one to "
       "ten. Dashed: the paper's biodiversity scheme; it treats less even where weeds are "
       "far apart, for a reason that it does not give.");
-  page.figures({to_svg(high_chart(rows, view, true)), to_svg(high_chart(rows, view, false))});
+  std::vector<std::string> shares;
+  for (auto view = experiment.views.rbegin(); view != experiment.views.rend(); ++view) {
+    shares.push_back(to_svg(high_chart(rows, *view, true)));
+    shares.push_back(to_svg(high_chart(rows, *view, false)));
+  }
+  page.figures(shares);
+  page.section("What it costs",
+               "How many points of all weeds are lost more when the weights are set. Rolling and "
+               "segment view; the scheme asks for weeds of high priority, the total pays.");
+  std::vector<std::string> costs;
+  for (auto view = experiment.views.rbegin(); view != experiment.views.rend(); ++view) {
+    costs.push_back(to_svg(cost_chart(pairs, rows, *view)));
+  }
+  page.figures(costs);
 
   page.section("Plain against biodiversity", "Plain: all weeds weigh the same.");
   std::vector<std::string> charts;
   for (const std::string& planner : main_planners(rows)) {
-    charts.push_back(to_svg(share_chart(rows, planner, view)));
+    for (auto view = experiment.views.rbegin(); view != experiment.views.rend(); ++view) {
+      charts.push_back(to_svg(share_chart(rows, planner, *view)));
+    }
   }
   charts.push_back(to_svg(paper_chart()));
   page.figures(charts);

@@ -78,7 +78,7 @@ double start_x_m(const SetupParameters& setup) {
 }
 
 Result<DriveResult> drive(const FieldTargets& field, const planning::PlannerParameters& planner,
-                          const SetupParameters& setup) {
+                          const SetupParameters& setup, const AllocationCount& allocations) {
   using Clock = std::chrono::steady_clock;
   constexpr double kRounding_m = 1e-9;
   const auto axes = axis_specs(setup);
@@ -97,11 +97,14 @@ Result<DriveResult> drive(const FieldTargets& field, const planning::PlannerPara
     const planning::RobotState robot{.x_m = x_m, .speed_mps = planner.speed_mps};
     if (Status status = view->advance(robot, seen_m); !status.ok()) return status.error();
     if (Status status = observer.show(*view, seen_m); !status.ok()) return status.error();
+    const std::uint64_t allocated = allocations ? allocations() : 0;
     const auto begin = Clock::now();
     const auto replanned = view->replan();
     const std::chrono::duration<double, std::micro> time = Clock::now() - begin;
     if (!replanned.ok()) return replanned.error();
-    if (*replanned) result.replan_us.push_back(time.count());
+    if (!*replanned) continue;
+    if (allocations) result.replan_allocations.push_back(allocations() - allocated);
+    result.replan_us.push_back(time.count());
   }
   view->take_outcomes(result.outcomes);
   if (result.outcomes.size() != field.weeds.size()) {

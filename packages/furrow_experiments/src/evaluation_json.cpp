@@ -65,7 +65,8 @@ Json row_json(const BenchmarkRow& row) {
           {"weeds_per_m2", row.weeds_per_m2},
           {"targets", row.targets},
           {"replan_p50_us", row.replan_p50_us},
-          {"replan_p99_us", row.replan_p99_us}};
+          {"replan_p99_us", row.replan_p99_us},
+          {"allocations_per_replan", optional(row.allocations_per_replan)}};
 }
 
 template <class Rows>

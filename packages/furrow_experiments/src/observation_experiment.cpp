@@ -119,7 +119,7 @@ Result<ObservationResult> run(const ObservationExperiment& experiment, const Pro
                              });
     if (!points.ok()) return points.error();
     result.sweeps = std::move(*points);
-    result.sweep_field = field.name;
+    result.sweep_seeds = field.imported ? 1 : experiment.sweep_seeds;
   }
   return result;
 }

@@ -199,7 +199,9 @@ void add_sweeps(ledger::HtmlPage& page, const ObservationResult& result) {
   if (result.sweeps.empty()) return;
   const auto& sweeps = result.sweeps;
   page.section("What if", "One figure of the machine changed at a time, rolling view, " +
-                              field_title(sweeps.front().row) + ".");
+                              field_title(sweeps.front().row) + ", " +
+                              number(static_cast<double>(result.sweep_seeds)) +
+                              " fields for each point. Bars: 95 % confidence intervals.");
   page.figures({to_svg(sweep_chart(sweeps, "speed_mps", "Robot speed", "m/s")),
                 to_svg(sweep_chart(sweeps, "axes", "Number of axes", "axes")),
                 to_svg(sweep_chart(sweeps, "axis_velocity_mps", "Axis velocity", "m/s")),

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "furrow_experiments/drive.hpp"
@@ -27,10 +30,17 @@ planning::PlannerParameters parameters_of(const PlannerBenchmark& benchmark,
   return parameters;
 }
 
+std::optional<double> mean_of(const std::vector<std::uint64_t>& counts) {
+  if (counts.empty()) return std::nullopt;
+  return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0})) /
+         static_cast<double>(counts.size());
+}
+
 Result<BenchmarkRow> stream_row(const PlannerBenchmark& benchmark, const PlannerChoice& choice,
                                 const FieldCase& field) {
   const auto parameters = parameters_of(benchmark, choice);
   std::vector<double> times_us;
+  std::vector<std::uint64_t> allocations;
   const auto begin = Clock::now();
   for (std::int64_t s = 0; s < benchmark.sampling.seeds; ++s) {
     const std::chrono::duration<double> taken = Clock::now() - begin;
@@ -39,8 +49,12 @@ Result<BenchmarkRow> stream_row(const PlannerBenchmark& benchmark, const Planner
         make_targets(field, benchmark.sampling.row,
                      static_cast<std::uint64_t>(benchmark.sampling.first_seed + s));
     if (!targets.ok()) return targets.error();
-    const auto driven = drive(*targets, parameters, benchmark.setup);
+    const auto driven = drive(*targets, parameters, benchmark.setup, benchmark.allocations);
     if (!driven.ok()) return driven.error();
+    const auto& counts = driven->replan_allocations;
+    allocations.insert(allocations.end(),
+                       counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2),
+                       counts.end());
     times_us.insert(times_us.end(), driven->replan_us.begin(), driven->replan_us.end());
   }
   BenchmarkRow row;
@@ -50,6 +64,7 @@ Result<BenchmarkRow> stream_row(const PlannerBenchmark& benchmark, const Planner
   row.replans = times_us.size();
   row.replan_p50_us = quantile(times_us, 0.5);
   row.replan_p99_us = quantile(std::move(times_us), 0.99);
+  row.allocations_per_replan = mean_of(allocations);
   return row;
 }
 
@@ -69,12 +84,17 @@ Result<BenchmarkRow> window_row(const PlannerBenchmark& benchmark, const Planner
       .robot = {.x_m = start_m, .speed_mps = parameters.speed_mps}};
   planning::Plan plan;
   std::vector<double> times_us;
+  std::vector<std::uint64_t> allocations;
   const auto begin = Clock::now();
   // The first plan fills the planner's memory and is not counted.
   for (int i = 0; i <= kMostPlans; ++i) {
+    const std::uint64_t allocated = benchmark.allocations ? benchmark.allocations() : 0;
     const auto before = Clock::now();
     if (Status status = planner->plan(problem, plan); !status.ok()) return status.error();
     const auto after = Clock::now();
+    if (i > 0 && benchmark.allocations) {
+      allocations.push_back(benchmark.allocations() - allocated);
+    }
     if (i > 0) times_us.push_back(Microseconds(after - before).count());
     if (i > 0 && std::chrono::duration<double>(after - begin).count() > benchmark.budget_s) break;
   }
@@ -85,6 +105,7 @@ Result<BenchmarkRow> window_row(const PlannerBenchmark& benchmark, const Planner
   row.replans = times_us.size();
   row.replan_p50_us = quantile(times_us, 0.5);
   row.replan_p99_us = quantile(std::move(times_us), 0.99);
+  row.allocations_per_replan = mean_of(allocations);
   return row;
 }
 
@@ -97,6 +118,29 @@ Result<FieldTargets> window_field(const PlannerBenchmark& benchmark, double coun
 }
 
 }  // namespace
+
+double growth_exponent(const std::vector<BenchmarkRow>& rows, std::string_view planner,
+                       double least_targets) {
+  std::vector<std::pair<double, double>> points;
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  for (const BenchmarkRow& row : rows) {
+    if (row.planner != planner || row.targets < least_targets || row.replan_p50_us <= 0.0) continue;
+    points.emplace_back(std::log(row.targets), std::log(row.replan_p50_us));
+    mean_x += points.back().first;
+    mean_y += points.back().second;
+  }
+  if (points.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  mean_x /= static_cast<double>(points.size());
+  mean_y /= static_cast<double>(points.size());
+  double xy = 0.0;
+  double xx = 0.0;
+  for (const auto& [x, y] : points) {
+    xy += (x - mean_x) * (y - mean_y);
+    xx += (x - mean_x) * (x - mean_x);
+  }
+  return xy / xx;
+}
 
 Result<BenchmarkResult> run(const PlannerBenchmark& benchmark, const Progress& progress) {
   for (const PlannerChoice& choice : benchmark.planners) {

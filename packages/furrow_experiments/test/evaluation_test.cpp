@@ -201,8 +201,37 @@ TEST(Benchmark, CountsReplansAndTargets) {
   EXPECT_GE(result->stream[0].replan_p99_us, result->stream[0].replan_p50_us);
   EXPECT_NEAR(result->stream[0].targets, 20.0 * 1.39, 1e-9);
   ASSERT_EQ(result->window.size(), 2U);
+  EXPECT_FALSE(result->stream[0].allocations_per_replan.has_value()) << "nobody counted";
   benchmark.window_targets = {0};
   EXPECT_FALSE(run(benchmark).ok());
+}
+
+TEST(Benchmark, CountsAllocationsOfTheSteadyState) {
+  PlannerBenchmark benchmark;
+  benchmark.fields = {{"some", 20.0, std::nullopt}};
+  benchmark.planners = {{"exact", "joint"}};
+  benchmark.sampling = small_sampling();
+  benchmark.window_targets = {10};
+  std::uint64_t count = 0;
+  benchmark.allocations = [&] { return count += 3; };  // as if each plan asked for memory so often
+  const auto result = run(benchmark);
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_DOUBLE_EQ(result->stream[0].allocations_per_replan.value(), 3.0);
+  EXPECT_DOUBLE_EQ(result->window[0].allocations_per_replan.value(), 3.0);
+}
+
+TEST(Benchmark, FindsThePowerOfTheGrowth) {
+  std::vector<BenchmarkRow> rows;
+  for (const double targets : {10.0, 100.0, 1000.0, 10000.0}) {
+    BenchmarkRow row;
+    row.planner = "exact/joint";
+    row.targets = targets;
+    row.replan_p50_us = targets < 50.0 ? 1e6 : 0.5 * std::pow(targets, 1.5);
+    rows.push_back(row);
+  }
+  EXPECT_NEAR(growth_exponent(rows, "exact/joint", 50.0), 1.5, 1e-9);
+  EXPECT_TRUE(std::isnan(growth_exponent(rows, "exact/joint", 5000.0)));
+  EXPECT_TRUE(std::isnan(growth_exponent(rows, "other", 0.0)));
 }
 
 }  // namespace

@@ -72,8 +72,9 @@ TEST(Json, BenchmarkHasItsKeys) {
   ASSERT_TRUE(result.ok());
   const Json json = Json::parse(to_json(benchmark, *result, "1.2.3"));
   ASSERT_EQ(json["rows"].size(), 4U);
-  EXPECT_EQ(keys_of(json["rows"][0]), (std::set<std::string>{"planner", "weeds_per_m2", "targets",
-                                                             "replan_p50_us", "replan_p99_us"}));
+  EXPECT_EQ(keys_of(json["rows"][0]),
+            (std::set<std::string>{"planner", "weeds_per_m2", "targets", "replan_p50_us",
+                                   "replan_p99_us", "allocations_per_replan"}));
   EXPECT_EQ(json["window"].size(), 2U);
   EXPECT_NE(to_html(benchmark, *result, "1.2.3").find("<svg"), std::string::npos);
 }

@@ -19,8 +19,10 @@ struct Combination {
 };
 
 constexpr Combination kAll[] = {
-    {"greedy", "static"},  {"notsp", "static"},  {"permutation", "static"}, {"exact", "static"},
-    {"exact", "distance"}, {"exact", "dynamic"}, {"greedy", "joint"},       {"exact", "joint"},
+    {"greedy", "distance"}, {"greedy", "static"}, {"greedy", "dynamic"},     {"notsp", "distance"},
+    {"notsp", "static"},    {"notsp", "dynamic"}, {"exact", "distance"},     {"exact", "static"},
+    {"exact", "dynamic"},   {"greedy", "joint"},  {"permutation", "static"}, {"exact", "joint"},
+    {"footprint", "joint"},
 };
 
 PlannerParameters parameters_for(const Combination& combination) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "furrow_core/result.hpp"
@@ -17,11 +19,15 @@ struct Spray {
   std::vector<planning::TargetId> treated;
 };
 
+/// How often the calling thread has asked for memory so far.
+using AllocationCount = std::function<std::uint64_t()>;
+
 struct DriveResult {
   std::vector<planning::TargetOutcome> outcomes;  ///< one for each weed, by id
   std::vector<Spray> sprays;                      ///< by axis, then along its way
   std::vector<double> travel_m;                   ///< of each axis
   std::vector<double> replan_us;  ///< of each frame that was planned; by the clock, not repeatable
+  std::vector<std::uint64_t> replan_allocations;  ///< of the same frames; empty when not counted
 };
 
 /// Drives over a field at the planner's nominal speed without drawing anything: at each frame the
@@ -30,7 +36,8 @@ struct DriveResult {
 /// refused, or sprays that check_sprays refuses. Throws ConfigError as make_observation_view.
 [[nodiscard]] Result<DriveResult> drive(const FieldTargets& field,
                                         const planning::PlannerParameters& planner,
-                                        const SetupParameters& setup);
+                                        const SetupParameters& setup,
+                                        const AllocationCount& allocations = {});
 
 /// Where the robot of drive() starts.
 [[nodiscard]] double start_x_m(const SetupParameters& setup);

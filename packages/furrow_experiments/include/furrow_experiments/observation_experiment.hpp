@@ -28,7 +28,7 @@ struct ObservationExperiment {
 struct ObservationResult {
   std::vector<EvaluationRow> rows;  ///< by field, planner, view
   std::vector<SweepPoint> sweeps;
-  std::string sweep_field;
+  std::int64_t sweep_seeds = 0;
   std::vector<RouteExample> routes;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,7 @@ struct PlannerBenchmark {
   SamplingParameters sampling;
   double budget_s = 5.0;  ///< no further field is driven for a row that has taken this long
   std::vector<std::int64_t> window_targets = {50, 100, 200, 500, 1000, 2000, 5000};
+  AllocationCount allocations;  ///< empty: not counted
 };
 
 struct BenchmarkRow {
@@ -27,12 +29,19 @@ struct BenchmarkRow {
   double replan_p50_us = 0.0;
   double replan_p99_us = 0.0;
   std::size_t replans = 0;
+  /// Mean in steady state: the second half of each drive; a window that was planned before.
+  std::optional<double> allocations_per_replan;
 };
 
 struct BenchmarkResult {
   std::vector<BenchmarkRow> stream;  ///< replanning at each frame of the rolling view
   std::vector<BenchmarkRow> window;  ///< one plan of a window of that many targets, at 81.2 per m2
 };
+
+/// The power of the number of targets with which the median time grows, fitted to the rows of a
+/// planner with at least `least_targets`; 1 is linear. Not a number for fewer than two such rows.
+[[nodiscard]] double growth_exponent(const std::vector<BenchmarkRow>& rows,
+                                     std::string_view planner, double least_targets);
 
 /// Errors and exceptions: as drive_all.
 [[nodiscard]] Result<BenchmarkResult> run(const PlannerBenchmark& benchmark,
