@@ -68,6 +68,7 @@ DDS_NAMES = re.compile(r"\beprosima::(fastdds|fastrtps)\b")
 
 # package.xml has the keys of rosdep; CMake has names of its own.
 CMAKE_NAMES = {
+    "cyclonedds-dev": "CycloneDDS",
     "eigen": "Eigen3",
     "libbenchmark-dev": "benchmark",
     "libcli11-dev": "CLI11",

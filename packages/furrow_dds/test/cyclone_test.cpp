@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <numeric>
+#include <optional>
+
+#include "furrow_msgs/nav_msgs.h"
+#include "furrow_msgs/topics.hpp"
+#include "test_support.hpp"
+
+extern char** environ;
+
+namespace furrow::dds {
+namespace {
+
+using nav_msgs::msg::Odometry;
+namespace topics = msgs::topics;
+
+/// Another vendor's DDS in a program of its own, on loopback, without multicast.
+class CyclonePeer {
+ public:
+  CyclonePeer() {
+    int ends[2];
+    if (pipe(ends) != 0) return;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+    posix_spawn_file_actions_addclose(&actions, ends[1]);
+    std::string program = FURROW_CYCLONE_PEER;
+    std::string domain = std::to_string(test_domain());
+    char* arguments[] = {program.data(), domain.data(), nullptr};
+    setenv("CYCLONEDDS_URI",
+           "<General><Interfaces><NetworkInterface address='127.0.0.1'/></Interfaces>"
+           "<AllowMulticast>false</AllowMulticast></General>"
+           "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+           "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>",
+           1);
+    started_ = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments, environ) == 0;
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[0]);
+    input_ = ends[1];
+  }
+  ~CyclonePeer() {
+    if (started_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    close(input_);
+  }
+  CyclonePeer(const CyclonePeer&) = delete;
+  CyclonePeer& operator=(const CyclonePeer&) = delete;
+  [[nodiscard]] bool started() const { return started_; }
+
+ private:
+  pid_t pid_ = 0;
+  int input_ = -1;
+  bool started_ = false;
+};
+
+class CycloneTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    reader_ = transport_.make_reader("cyclone/answer", msgs::message_type<Odometry>(),
+                                     msgs::event_qos(), [this](const graph::MessagePtr& message) {
+                                       answers_.put(*static_cast<const Odometry*>(message.get()));
+                                     });
+    peer_.emplace();
+    ASSERT_TRUE(peer_->started());
+  }
+  std::unique_ptr<graph::WireWriter> writer(const msgs::Topic& topic) {
+    auto writer = transport_.make_writer(std::string(topic.name), *topic.type, topic.qos);
+    EXPECT_TRUE(eventually([&] { return writer->has_readers() && reader_->writers() == 1; }));
+    return writer;
+  }
+
+  /// Both sides find each other in their own time, and what is sent between is nobody's: repeats
+  /// the message until it is answered.
+  std::optional<Odometry> answer_to(graph::WireWriter& out, const graph::MessagePtr& message,
+                                    const std::string& frame) {
+    std::optional<Odometry> found;
+    constexpr std::chrono::milliseconds kAgain{100};
+    auto sent = std::chrono::steady_clock::time_point();
+    const bool answered = eventually([&] {
+      if (std::chrono::steady_clock::now() - sent > kAgain) {
+        sent = std::chrono::steady_clock::now();
+        out.write(message);
+      }
+      for (const Odometry& answer : answers_.items()) {
+        if (answer.header().frame_id() == frame) found = answer;
+      }
+      return found.has_value();
+    });
+    EXPECT_TRUE(answered);
+    return found;
+  }
+
+  DdsTransport transport_{test_parameters("furrow")};
+  Inbox<Odometry> answers_;
+  std::unique_ptr<graph::WireReader> reader_;
+  std::optional<CyclonePeer> peer_;
+};
+
+TEST_F(CycloneTest, ReadsImagesOfFurrow) {
+  const auto out = writer(topics::CameraImage::topic());
+  // One that goes in a packet, and one of 1280 x 960 in three colours.
+  for (const std::size_t bytes : {300U, 3'686'400U}) {
+    auto image = std::make_shared<Image>(*make_image(bytes, 5));
+    const std::string frame = "camera " + std::to_string(bytes);
+    image->header().frame_id(frame);
+    image->height(960);
+    const auto answer = answer_to(*out, image, frame);
+    ASSERT_TRUE(answer);
+    const auto& position = answer->pose().pose().position();
+    EXPECT_EQ(position.x(), 960.0);
+    EXPECT_EQ(position.y(), static_cast<double>(bytes));
+    EXPECT_EQ(position.z(), std::accumulate(image->data().begin(), image->data().end(), 0.0));
+  }
+}
+
+TEST_F(CycloneTest, ReadsOdometryOfFurrowAndFeedsItOdometry) {
+  const auto out = writer(topics::RobotOdometry::topic());
+  auto odometry = std::make_shared<Odometry>();
+  odometry->header().frame_id("field");
+  odometry->pose().pose().position().x(1.25);
+  odometry->pose().pose().position().y(-0.5);
+  odometry->pose().pose().position().z(1e-9);
+  odometry->twist().twist().linear().x(0.5);
+  const auto answer = answer_to(*out, odometry, "field");
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->child_frame_id(), "cyclone");
+  EXPECT_EQ(answer->pose().pose().position().x(), 2.5);
+  EXPECT_EQ(answer->pose().pose().position().y(), -1.0);
+  EXPECT_EQ(answer->pose().pose().position().z(), 2e-9);
+  EXPECT_EQ(answer->pose().pose().orientation().w(), 1.0);
+  EXPECT_EQ(answer->twist().twist().linear().x(), 1.0);
+  EXPECT_EQ(answer->twist().covariance()[35], 0.25);
+}
+
+}  // namespace
+}  // namespace furrow::dds
