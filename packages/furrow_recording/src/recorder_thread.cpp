@@ -95,6 +95,21 @@ class RecorderThread::Impl {
     return true;
   }
 
+  void record_all(QueuedMessage message) {
+    {
+      std::unique_lock lock(mutex_);
+      // A message larger than the whole queue goes in when it is empty.
+      room_.wait(lock, [&] {
+        return queued_messages_ == 0 ||
+               (queued_messages_ < max_messages_ && queued_bytes_ + message.bytes <= max_bytes_);
+      });
+      ++queued_messages_;
+      queued_bytes_ += message.bytes;
+      queue_.emplace_back(std::move(message));
+    }
+    wake_.notify_one();
+  }
+
   /// Returns when the recorder's thread has done it.
   void command(const Command& what) {
     std::unique_lock lock(mutex_);
@@ -164,6 +179,7 @@ class RecorderThread::Impl {
     const std::lock_guard lock(mutex_);
     --queued_messages_;
     queued_bytes_ -= queued.bytes;
+    room_.notify_one();
   }
 
   void report_dropped() {
@@ -182,6 +198,7 @@ class RecorderThread::Impl {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::condition_variable done_;
+  std::condition_variable room_;
   std::deque<Item> queue_;
   std::size_t queued_messages_ = 0;
   std::uint64_t queued_bytes_ = 0;
@@ -216,6 +233,13 @@ bool RecorderThread::record(std::size_t topic, Time log_time, Time publish_time,
                             std::shared_ptr<const void> message, const msgs::MessageType& type) {
   const std::size_t bytes = type.serialized_size(message.get());
   return impl_->record({topic, log_time, publish_time, nullptr, std::move(message), &type, bytes});
+}
+
+void RecorderThread::record_all(std::size_t topic, Time log_time, Time publish_time,
+                                std::shared_ptr<const void> message,
+                                const msgs::MessageType& type) {
+  const std::size_t bytes = type.serialized_size(message.get());
+  impl_->record_all({topic, log_time, publish_time, nullptr, std::move(message), &type, bytes});
 }
 
 void RecorderThread::trigger() {

@@ -10,7 +10,8 @@
 namespace furrow::recording {
 
 /// A Recorder on a thread of its own, behind a queue bounded in bytes and messages. Functions are
-/// thread-safe; the record() ones never block on the disk and never copy or serialize.
+/// thread-safe; the record() ones never copy or serialize, and only record_all() waits for the
+/// disk.
 class RecorderThread {
  public:
   RecorderThread(const RecorderParameters& parameters, std::filesystem::path stem,
@@ -27,6 +28,10 @@ class RecorderThread {
   /// Nobody may change it any more.
   bool record(std::size_t topic, Time log_time, Time publish_time,
               std::shared_ptr<const void> message, const msgs::MessageType& type);
+
+  /// As record(), but where the queue is full it waits for room: for runs in simulated time.
+  void record_all(std::size_t topic, Time log_time, Time publish_time,
+                  std::shared_ptr<const void> message, const msgs::MessageType& type);
 
   void trigger();
   void pause();
