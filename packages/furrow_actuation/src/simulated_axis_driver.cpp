@@ -230,6 +230,7 @@ Status SimulatedAxisDriver::home(Time now) {
       reading_.state == AxisState::kEmergencyStop || reading_.state == AxisState::kMoving) {
     return unavailable("the simulated drive cannot home now");
   }
+  if (setpoint_.velocity_mps != 0.0) return unavailable("the simulated axis is still stopping");
   MotionLimits slow = limits_;
   slow.max_velocity_mps = std::min(limits_.max_velocity_mps, parameters_.homing_speed_mps);
   const double reference_m = std::clamp(0.0, limits_.lower_m, limits_.upper_m);

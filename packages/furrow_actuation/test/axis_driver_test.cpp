@@ -4,6 +4,7 @@
 
 #include "furrow_actuation/simulated_axis_driver.hpp"
 #include "furrow_core/error.hpp"
+#include "furrow_core/random.hpp"
 
 namespace furrow::actuation {
 namespace {
@@ -196,6 +197,70 @@ TEST(SimulatedAxis, HomingWithoutReferenceTimesOut) {
   run.run(1.1);
   EXPECT_EQ(run.state(), AxisState::kFault);
   EXPECT_EQ(run.driver.reading().fault, DriveFault::kHomingFailed);
+}
+
+/// One request, order, fault or cut, whatever the drive is doing.
+void disturb(DriverRun& run, Random& random) {
+  switch (random.integer(0, 11)) {
+    case 0:
+      (void)run.driver.enable(run.now).ok();
+      break;
+    case 1:
+      (void)run.driver.disable(run.now).ok();
+      break;
+    case 2:
+      (void)run.driver.home(run.now).ok();
+      break;
+    case 3:
+      (void)run.driver.emergency_stop(run.now).ok();
+      break;
+    case 4:
+      run.driver.inject(run.now, random.bernoulli(0.5) ? DriveFault::kDrive : DriveFault::kNone);
+      break;
+    case 5:
+      run.driver.set_connected(run.now, random.bernoulli(0.7));
+      break;
+    case 6:
+      (void)run.write(AxisCommandMode::kStop).ok();
+      break;
+    case 7:  // the operator sets everything right
+      run.driver.set_connected(run.now, true);
+      run.driver.clear_faults();
+      (void)run.driver.reset(run.now).ok();
+      (void)run.driver.enable(run.now).ok();
+      break;
+    default:
+      (void)run.write(AxisCommandMode::kProfile, random.uniform(-0.8, 0.8)).ok();
+      break;
+  }
+}
+
+TEST(SimulatedAxis, StaysWithinItsLimitsWhateverItIsTold) {
+  int moved = 0;
+  int faults = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed, "drive");
+    SimulatedAxisParameters parameters;
+    parameters.start_ready = random.bernoulli(0.7);
+    parameters.start_position_m = random.uniform(-0.695, 0.695);
+    DriverRun run(parameters);
+    double velocity_mps = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      if (random.bernoulli(0.05)) disturb(run, random);
+      run.cycle();
+      const AxisReading& reading = run.driver.reading();
+      ASSERT_LE(std::abs(reading.position_m), kLimits.upper_m + 1e-9);
+      ASSERT_LE(std::abs(reading.velocity_mps), kLimits.max_velocity_mps + 1e-9);
+      ASSERT_LE(std::abs(reading.velocity_mps - velocity_mps) / kPeriod.to_seconds(),
+                kLimits.max_acceleration_mps2 * (1.0 + 1e-6));
+      velocity_mps = reading.velocity_mps;
+      moved += reading.state == AxisState::kMoving ? 1 : 0;
+      faults += reading.state == AxisState::kFault ? 1 : 0;
+    }
+  }
+  EXPECT_GT(moved, 100000);
+  EXPECT_GT(faults, 50000);
 }
 
 TEST(SimulatedAxis, RefusesBadParameters) {
