@@ -213,10 +213,12 @@ class PlannerComponent final : public graph::Component {
     crops_.clear();
     left_standing_.clear();
     lost_.clear();
+    unsound_.clear();
     for (const Track& track : tracks.tracks()) {
-      if (alive(track) && is_crop(track)) {
-        crops_.push_back({from_point(track.position()).head<2>(), track.area_mm2()});
-      }
+      const planning::CropPhenotype crop{from_point(track.position()).head<2>(), track.area_mm2()};
+      // One that is not sound would take the weight from every weed near it.
+      const bool sound = crop.p_F.allFinite() && std::isfinite(crop.area_mm2) && crop.area_mm2 >= 0;
+      if (sound && alive(track) && is_crop(track)) crops_.push_back(crop);
     }
     for (const Track& track : tracks.tracks()) {
       if (!alive(track)) {
@@ -253,6 +255,8 @@ class PlannerComponent final : public graph::Component {
         {.species = track.species(), .p_F = p_F, .area_mm2 = track.area_mm2()}, crops_);
     if (!weight.ok()) {
       context_.count("bad_tracks");
+      view_->remove(track.id());
+      unsound_.push_back(track.id());
       return;
     }
     if (weight->leave) {
@@ -295,6 +299,9 @@ class PlannerComponent final : public graph::Component {
     }
     for (const std::int64_t id : left_standing_) {
       message.decisions().push_back(to_decision(id, planning::Decision::kLowPriority, -1, base));
+    }
+    for (const std::int64_t id : unsound_) {
+      message.decisions().push_back(to_decision(id, planning::Decision::kInvalid, -1, base));
     }
     for (const std::int64_t id : lost_) {
       message.decisions().push_back(to_decision(id, planning::Decision::kInvalid, -1, base));
@@ -348,6 +355,7 @@ class PlannerComponent final : public graph::Component {
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::vector<planning::CropPhenotype> crops_;
   std::vector<std::int64_t> left_standing_;  ///< on purpose, by the newest tracks
+  std::vector<std::int64_t> unsound_;        ///< weeds whose numbers cannot be used
   std::vector<std::int64_t> lost_;           ///< targets whose track the tracker gave up
   std::vector<planning::TargetOutcome> outcomes_;
   std::uint64_t revision_ = 0;
