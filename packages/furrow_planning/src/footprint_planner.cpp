@@ -7,6 +7,11 @@
 #include "passing_fire.hpp"
 
 namespace furrow::planning {
+namespace {
+
+constexpr int kFruitless = 3;  ///< rounds without gain that end the pursuit of what is left
+
+}  // namespace
 
 Status FootprintPlanner::plan(const PlanningProblem& problem, Plan& plan) {
   if (Status status = prepare(problem, parameters_, treat_radius_m(parameters_), prepared_, plan);
@@ -19,9 +24,14 @@ Status FootprintPlanner::plan(const PlanningProblem& problem, Plan& plan) {
     chain.clear();
   }
   covered_.assign(prepared_.nodes.size(), 0);
+  extra_.assign(prepared_.nodes.size(), 0);
   start_from_stems();
-  improve_routes();
+  improve_routes(parameters_.improvement_rounds + 1);
+  best_value_ = weigh_all();
+  best_chains_ = chains_;
+  pursue_left();
   search_again();
+  chains_.swap(best_chains_);
   write_routes(problem, plan);
   return {};
 }
@@ -70,7 +80,7 @@ std::int64_t FootprintPlanner::cover_and_weigh(const Start& start,
   for (const std::uint32_t s : chain) {
     const Spray& spray = candidates_.sprays()[s];
     for (const Cover& cover : candidates_.covers(spray)) {
-      score += covered_[cover.node]++ == 0 ? cover.score : 0;
+      score += covered_[cover.node]++ == 0 ? cover.score + extra_[cover.node] : 0;
     }
     travel += prepared_.scoring.travel(spray.y_m - y_m);
     y_m = spray.y_m;
@@ -78,8 +88,8 @@ std::int64_t FootprintPlanner::cover_and_weigh(const Start& start,
   return score * Scoring::kScore - travel;
 }
 
-void FootprintPlanner::improve_routes() {
-  for (std::int64_t round = 0; round <= parameters_.improvement_rounds; ++round) {
+void FootprintPlanner::improve_routes(std::int64_t rounds) {
+  for (std::int64_t round = 0; round < rounds; ++round) {
     bool gained = false;
     for (std::size_t a = 0; a < chains_.size(); ++a) {
       const Start& start = prepared_.starts[a];
@@ -87,7 +97,8 @@ void FootprintPlanner::improve_routes() {
         continue;
       }
       cover(chains_[a], -1);
-      const std::int64_t value = solver_.solve(prepared_, candidates_, start, covered_, trial_);
+      const std::int64_t value =
+          solver_.solve(prepared_, candidates_, start, covered_, extra_, trial_);
       if (value > cover_and_weigh(start, chains_[a])) {
         gained = true;
         cover(chains_[a], -1);
@@ -103,32 +114,64 @@ void FootprintPlanner::improve_routes() {
 
 std::int64_t FootprintPlanner::weigh_all() {
   covered_.assign(prepared_.nodes.size(), 0);
+  aside_.swap(extra_);
+  extra_.assign(prepared_.nodes.size(), 0);
   std::int64_t value = 0;
   for (std::size_t a = 0; a < chains_.size(); ++a) {
     value += cover_and_weigh(prepared_.starts[a], chains_[a]);
   }
+  aside_.swap(extra_);
   return value;
 }
 
-void FootprintPlanner::search_again() {
-  bool left = false;
+bool FootprintPlanner::leaves_some() const {
   for (std::uint32_t k = 0; k < covered_.size(); ++k) {
-    left = left || (covered_[k] == 0 && candidates_.coverable(k));
+    if (covered_[k] == 0 && candidates_.coverable(k)) {
+      return true;
+    }
   }
-  if (!left) {
+  return false;
+}
+
+void FootprintPlanner::pursue_left() {
+  int fruitless = 0;
+  for (std::int64_t round = 0; round < parameters_.improvement_rounds; ++round) {
+    if (fruitless == kFruitless || !leaves_some()) {
+      break;
+    }
+    for (std::uint32_t k = 0; k < covered_.size(); ++k) {
+      if (covered_[k] == 0) {
+        extra_[k] += prepared_.nodes[k].score;
+      }
+    }
+    improve_routes(1);
+    const std::int64_t before = best_value_;
+    keep_if_better();
+    fruitless = best_value_ > before ? 0 : fruitless + 1;
+  }
+  extra_.assign(extra_.size(), 0);
+}
+
+void FootprintPlanner::keep_if_better() {
+  const std::int64_t value = weigh_all();
+  if (value > best_value_) {
+    best_value_ = value;
+    best_chains_ = chains_;
+  }
+}
+
+void FootprintPlanner::search_again() {
+  chains_ = best_chains_;
+  (void)weigh_all();
+  if (!leaves_some()) {
     return;
   }
-  const std::int64_t first = weigh_all();
-  first_chains_.resize(chains_.size());
-  first_chains_.swap(chains_);
   for (auto& chain : chains_) {
     chain.clear();
   }
   covered_.assign(covered_.size(), 0);
-  improve_routes();
-  if (weigh_all() <= first) {
-    first_chains_.swap(chains_);
-  }
+  improve_routes(parameters_.improvement_rounds + 1);
+  keep_if_better();
 }
 
 void FootprintPlanner::share_out() {

@@ -13,9 +13,10 @@ namespace furrow::planning {
 /// Plans sprays as discs that may be centred anywhere and treat several targets. Searches over the
 /// placements of SprayCandidates: from the exact joint routes of sprays on single stems, which also
 /// keep the travel low, by improving the axes one after the other, each best against what the
-/// others treat, until nothing is gained. When that leaves targets, a second search starts from
-/// nothing, and the better one counts. Plan::weight_bound counts every target that some
-/// placement treats.
+/// others treat, until nothing is gained. While that leaves targets, their scores are raised and
+/// the axes improved again, so that the search leaves its local optimum towards them (as breakout
+/// local search: Morris 1993); then a second search starts from nothing. What is best by the true
+/// scores counts. Plan::weight_bound counts every target that some placement treats.
 class FootprintPlanner final : public RoutePlanner {
  public:
   explicit FootprintPlanner(const PlannerParameters& parameters) : parameters_(parameters) {}
@@ -30,9 +31,14 @@ class FootprintPlanner final : public RoutePlanner {
   };
 
   void start_from_stems();
-  void improve_routes();
+  /// Until nothing is gained, at most so often; by the scores with what is extra.
+  void improve_routes(std::int64_t rounds);
+  void pursue_left();
   void search_again();
-  /// What all chains are worth together.
+  /// Whether a target is left that some placement treats.
+  [[nodiscard]] bool leaves_some() const;
+  void keep_if_better();
+  /// What all chains are worth together by the true scores.
   std::int64_t weigh_all();
   /// Adds (or takes away) what a chain covers.
   void cover(const std::vector<std::uint32_t>& chain, int change);
@@ -60,9 +66,12 @@ class FootprintPlanner final : public RoutePlanner {
   std::vector<std::vector<std::uint32_t>> classes_;
   std::vector<std::uint32_t> members_;
   std::vector<std::vector<std::uint32_t>> chains_;
-  std::vector<std::vector<std::uint32_t>> first_chains_;
+  std::vector<std::vector<std::uint32_t>> best_chains_;
+  std::int64_t best_value_ = 0;
   std::vector<std::uint32_t> trial_;
-  std::vector<std::uint16_t> covered_;
+  std::vector<std::uint16_t> covered_;  ///< by node
+  std::vector<std::int64_t> extra_;     ///< by node, on top of its score
+  std::vector<std::int64_t> aside_;     ///< its values while the true scores count
   std::vector<std::uint32_t> passing_nodes_;
   std::vector<Treated> treated_;                        ///< by node
   std::vector<std::vector<Eigen::Vector2d>> aims_;      ///< by axis and stop

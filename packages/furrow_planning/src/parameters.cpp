@@ -106,7 +106,9 @@ void PlannerParameters::visit(ParameterVisitor& v) {
            .max = 9},
           permutation_targets);
   v.visit({.name = "improvement_rounds",
-           .description = "rounds over the axes in which the footprint planner improves its routes",
+           .description =
+               "rounds over the axes in which the footprint planner improves its routes, and then "
+               "pursues what they leave",
            .min = 0,
            .max = 1000},
           improvement_rounds);

@@ -6,8 +6,8 @@
 namespace furrow::planning {
 
 std::int64_t SprayChainSolver::gain(const SprayCandidates& candidates, const Spray& spray,
-                                    std::int32_t last,
-                                    const std::vector<std::uint16_t>& covered) const {
+                                    std::int32_t last, const std::vector<std::uint16_t>& covered,
+                                    const std::vector<std::int64_t>& extra) const {
   std::int64_t sum = 0;
   for (const Cover& cover : candidates.covers(spray)) {
     if (covered[cover.node] != 0) {
@@ -24,7 +24,7 @@ std::int64_t SprayChainSolver::gain(const SprayCandidates& candidates, const Spr
       }
       l = label.previous;
     }
-    sum += fresh ? cover.score : 0;
+    sum += fresh ? cover.score + extra[cover.node] : 0;
   }
   return sum;
 }
@@ -32,6 +32,7 @@ std::int64_t SprayChainSolver::gain(const SprayCandidates& candidates, const Spr
 std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
                                      const SprayCandidates& candidates, const Start& start,
                                      const std::vector<std::uint16_t>& covered,
+                                     const std::vector<std::int64_t>& extra,
                                      std::vector<std::uint32_t>& chain) {
   chain.clear();
   labels_.clear();
@@ -45,7 +46,7 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
     if (spray.x_m <= start.x_m || !start.spans(spray.y_m)) {
       continue;
     }
-    const std::int64_t alone = gain(candidates, spray, -1, covered) * Scoring::kScore;
+    const std::int64_t alone = gain(candidates, spray, -1, covered, extra) * Scoring::kScore;
     if (alone <= 0) {
       continue;
     }
@@ -71,8 +72,9 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
         continue;
       }
       const std::int64_t value =
-          dx_m > 2.0 * radius_m_ ? before + alone
-                                 : before + gain(candidates, spray, j, covered) * Scoring::kScore;
+          dx_m > 2.0 * radius_m_
+              ? before + alone
+              : before + gain(candidates, spray, j, covered, extra) * Scoring::kScore;
       if (value > label.value) {
         label.value = value;
         label.previous = j;

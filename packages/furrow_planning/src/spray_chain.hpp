@@ -14,11 +14,12 @@ namespace furrow::planning {
 /// label for each placement makes this a heuristic where such sprays meet, exact elsewhere.)
 class SprayChainSolver {
  public:
-  /// `covered[node]`: how many sprays of other axes treat it. Writes indices into sprays, in order
+  /// `covered[node]`: how many sprays of other axes treat it; `extra[node]`: a score on top of the
+  /// one that its cover has. Writes indices into sprays, in order
   /// of travel, and returns the value: score * Scoring::kScore - travel.
   std::int64_t solve(const PreparedProblem& prepared, const SprayCandidates& candidates,
                      const Start& start, const std::vector<std::uint16_t>& covered,
-                     std::vector<std::uint32_t>& chain);
+                     const std::vector<std::int64_t>& extra, std::vector<std::uint32_t>& chain);
 
  private:
   struct Label {
@@ -31,8 +32,8 @@ class SprayChainSolver {
   };
   /// What the spray adds to a chain that ends in `last`.
   [[nodiscard]] std::int64_t gain(const SprayCandidates& candidates, const Spray& spray,
-                                  std::int32_t last,
-                                  const std::vector<std::uint16_t>& covered) const;
+                                  std::int32_t last, const std::vector<std::uint16_t>& covered,
+                                  const std::vector<std::int64_t>& extra) const;
 
   double radius_m_ = 0.0;
   std::vector<Label> labels_;
