@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs the weeding graph in real time against four simulated CiA 402 drives, programs of their own
-# that speak Modbus TCP on the loopback (ports 1502 to 1505). Arguments go to `furrow run`.
+# that speak Modbus TCP on the loopback (ports 1502 to 1505). Arguments go to `furrow run`, but for
+# --profile-only: drives that offer no cyclic positions.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -13,10 +14,15 @@ if [[ ! -x $drive ]]; then
   exit 2
 fi
 
+options=()
+if [[ ${1-} == --profile-only ]]; then
+  options=("$1")
+  shift
+fi
 drives=()
 trap 'kill "${drives[@]}" 2>/dev/null || true; wait' EXIT
 for port in 1502 1503 1504 1505; do
-  "$drive" "$port" &
+  "$drive" "${options[@]}" "$port" &
   drives+=($!)
 done
 
