@@ -46,6 +46,7 @@ DriveFigures figures_of(const FieldTargets& field, DriveResult&& drive) {
     const bool treated = decision == planning::Decision::kTreat;
     figures.treated += treated ? 1U : 0U;
     figures.left_for_crop += decision == planning::Decision::kProtectedCrop ? 1U : 0U;
+    figures.outside += decision == planning::Decision::kOutside ? 1U : 0U;
     if (field.high_priority[i]) {
       ++figures.high;
       figures.high_treated += treated ? 1U : 0U;
@@ -227,6 +228,7 @@ EvaluationRow summarize(const FieldCase& field, const Variant& variant,
   double weeds = 0.0;
   double treated = 0.0;
   double left_for_crop = 0.0;
+  double outside = 0.0;
   double sprays = 0.0;
   for (const DriveFigures& drive : figures) {
     losses.push_back(drive.loss_pct());
@@ -236,6 +238,7 @@ EvaluationRow summarize(const FieldCase& field, const Variant& variant,
     weeds += static_cast<double>(drive.weeds);
     treated += static_cast<double>(drive.treated);
     left_for_crop += static_cast<double>(drive.left_for_crop);
+    outside += static_cast<double>(drive.outside);
     sprays += static_cast<double>(drive.sprays);
   }
   const MeanAndSpread travel = mean_and_sd(travels);
@@ -254,6 +257,9 @@ EvaluationRow summarize(const FieldCase& field, const Variant& variant,
   row.replan_p99_us = quantile(std::move(times), 0.99);
   row.optimum_loss_pct = mean_and_sd(optima).mean;
   row.left_for_crop_pct = weeds > 0.0 ? 100.0 * left_for_crop / weeds : 0.0;
+  if (variant.planner.planner == "footprint") {
+    row.bound_loss_pct = weeds > 0.0 ? 100.0 * (left_for_crop + outside) / weeds : 0.0;
+  }
   row.sprays_per_weed = treated > 0.0 ? sprays / treated : 0.0;
   return row;
 }

@@ -43,7 +43,8 @@ Json row_json(const EvaluationRow& row) {
                {"replan_p50_us", row.replan_p50_us},
                {"replan_p99_us", row.replan_p99_us},
                {"paper_loss_pct", optional(row.paper_loss_pct)},
-               {"optimum_loss_pct", row.optimum_loss_pct}};
+               {"optimum_loss_pct", row.optimum_loss_pct},
+               {"bound_loss_pct", optional(row.bound_loss_pct)}};
   if (row.priorities) {
     json["scheme"] = row.priorities->scheme;
     json["treated_low_pct"] = row.priorities->treated_low_pct;

@@ -101,8 +101,8 @@ ReportTable field_table(const Rows& rows, const std::string& field,
     table.header.insert(table.header.end(),
                         {view + " loss, %", "\xC2\xB1 95 %", "travel, m", "\xC2\xB1 sd"});
   }
-  table.header.insert(table.header.end(),
-                      {"optimum, %", "sprays/weed", "p50, \xC2\xB5s", "p99, \xC2\xB5s"});
+  table.header.insert(table.header.end(), {"optimum, %", "bound, %", "sprays/weed",
+                                           "p50, \xC2\xB5s", "p99, \xC2\xB5s"});
   if (const PaperFigures* paper = paper_figures(field); paper != nullptr) {
     std::vector<std::string> line = {"paper (nOTSP, " + std::string(paper->field) + ")"};
     for (const std::string& view : views) {
@@ -112,7 +112,7 @@ ReportTable field_table(const Rows& rows, const std::string& field,
                    fixed(rolling ? paper->rolling_travel_m : paper->segment_travel_m, 1),
                    fixed(rolling ? paper->rolling_travel_sd_m : paper->segment_travel_sd_m, 1)});
     }
-    line.insert(line.end(), {"-", "-", "-", "-"});
+    line.insert(line.end(), {"-", "-", "-", "-", "-"});
     table.rows.push_back(std::move(line));
   }
   std::vector<std::string> line;
@@ -123,8 +123,9 @@ ReportTable field_table(const Rows& rows, const std::string& field,
     line.insert(line.end(), {fixed(row.loss_pct, 2), fixed(row.loss_ci95, 2),
                              fixed(row.travel_m_mean, 1), fixed(row.travel_m_sd, 1)});
     if (row.view != views.back()) continue;
-    line.insert(line.end(), {fixed(row.optimum_loss_pct, 2), fixed(row.sprays_per_weed, 2),
-                             fixed(row.replan_p50_us, 1), fixed(row.replan_p99_us, 1)});
+    line.insert(line.end(), {fixed(row.optimum_loss_pct, 2), cell(row.bound_loss_pct, 2),
+                             fixed(row.sprays_per_weed, 2), fixed(row.replan_p50_us, 1),
+                             fixed(row.replan_p99_us, 1)});
     table.rows.push_back(line);
   }
   return table;
@@ -267,7 +268,10 @@ std::string to_html(const ObservationExperiment& experiment, const ObservationRe
 
   page.section(
       "Tables",
-      "Loss: weeds left untreated. Travel: of one axis over the whole row. p50, p99: time of "
+      "Loss: weeds left untreated. Optimum: of one spray for each weed, the whole row known. "
+      "Bound: "
+      "what no placement of footprints at all can treat; the gap to it is the most that any plan "
+      "could still gain. Travel: of one axis over the whole row. p50, p99: time of "
       "one plan in the last view, measured while other drives ran beside it.");
   for (const std::string& field : fields) page.table(field_table(rows, field, experiment.views));
   if (paper) {

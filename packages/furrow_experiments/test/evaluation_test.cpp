@@ -75,6 +75,8 @@ TEST(Observation, PlannersStandInTheirOrder) {
     EXPECT_LE(footprint.sprays_per_weed, 1.0);
     EXPECT_DOUBLE_EQ(joint.sprays_per_weed, 1.0);
     EXPECT_EQ(joint.optimum_loss_pct, divided.optimum_loss_pct);
+    EXPECT_FALSE(joint.bound_loss_pct.has_value());
+    EXPECT_LE(footprint.bound_loss_pct.value(), footprint.loss_pct + 1e-9);
   }
 }
 

@@ -14,9 +14,9 @@ namespace {
 using Json = nlohmann::json;
 
 const std::set<std::string> kObservationKeys = {
-    "field",         "weeds_per_m2",  "kinematics",     "assignment",      "planner",
-    "view",          "loss_pct",      "loss_ci95",      "travel_m_mean",   "travel_m_sd",
-    "replan_p50_us", "replan_p99_us", "paper_loss_pct", "optimum_loss_pct"};
+    "field",         "weeds_per_m2",  "kinematics",     "assignment",       "planner",
+    "view",          "loss_pct",      "loss_ci95",      "travel_m_mean",    "travel_m_sd",
+    "replan_p50_us", "replan_p99_us", "paper_loss_pct", "optimum_loss_pct", "bound_loss_pct"};
 
 std::set<std::string> keys_of(const Json& json) {
   std::set<std::string> keys;

@@ -41,6 +41,7 @@ struct DriveFigures {
   std::size_t high = 0;
   std::size_t high_treated = 0;
   std::size_t left_for_crop = 0;  ///< no spray could keep out of the protection zone
+  std::size_t outside = 0;        ///< beyond the span of every axis
   std::size_t sprays = 0;
   std::size_t optimum_treated = 0;
   std::vector<double> travel_m;   ///< of each axis
@@ -68,6 +69,9 @@ struct EvaluationRow {
   double replan_p99_us = 0.0;
   std::optional<double> paper_loss_pct;
   double optimum_loss_pct = 0.0;
+  /// Planners that place footprints: what no placement at all can treat, so that loss_pct minus
+  /// this is the most that any plan could gain.
+  std::optional<double> bound_loss_pct;
   double left_for_crop_pct = 0.0;
   double sprays_per_weed = 0.0;  ///< treated
 

@@ -18,8 +18,10 @@ struct BoundEffort {
 /// stem within the radius of any of its points, and allows every move that any of its points
 /// allows; trapezoid moves to velocity moves). That each stem counts once is priced instead of
 /// enforced (Lagrange multipliers, subgradient method: Held and Karp 1971), and each axis takes the
-/// chain that is then worth most. For evaluation, not for the replan path: time grows with
-/// iterations * targets / cell_m^2. Error: as RoutePlanner::plan.
+/// chain that is then worth most. A stem that a chain passes several times is paid each time less
+/// its price, which is why the bound lies far above where axes are saturated, and at everything
+/// where they are not; there the planner comes close to it. For evaluation, not for the replan
+/// path: time grows with iterations * targets / cell_m^2. Error: as RoutePlanner::plan.
 [[nodiscard]] Result<double> footprint_weight_bound(const PlanningProblem& problem,
                                                     const PlannerParameters& parameters,
                                                     const BoundEffort& effort = {});
