@@ -29,6 +29,12 @@ void VegetationFusionParameters::visit(ParameterVisitor& v) {
            .min = 0.1,
            .max = 50.0},
           network_logit_max);
+  v.visit({.name = "agreement_exponent",
+           .description = "How much less the network weighs in an image where it misses pixels "
+                          "that the index is sure of: weight times the share it sees to this power",
+           .min = 0.0,
+           .max = 100.0},
+          agreement_exponent);
   v.visit({.name = "index_scale",
            .description = "Levels of the index above its threshold that are one unit of log-odds",
            .min = 0.5,
@@ -36,6 +42,18 @@ void VegetationFusionParameters::visit(ParameterVisitor& v) {
           index_scale);
   index.visit(v);
 }
+
+namespace {
+
+/// Share of the pixels above a level of the index in which the network sees plants; 1 where there
+/// are none.
+double agreement(const cv::Mat& logit, const cv::Mat& index, double level, float bias) {
+  const cv::Mat sure = index > level;
+  const int all = cv::countNonZero(sure);
+  return all == 0 ? 1.0 : static_cast<double>(cv::countNonZero(sure & (logit > bias))) / all;
+}
+
+}  // namespace
 
 cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation,
                         const VegetationFusionParameters& parameters) {
@@ -52,7 +70,15 @@ cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation
     evidence[i] = static_cast<float>(
         std::clamp((i - vegetation.threshold - 0.5) / parameters.index_scale, -most, most));
   }
-  const auto weight = static_cast<float>(index_too ? parameters.network_weight : 1.0);
+  double weight_of_network = 1.0;
+  if (index_too) {
+    constexpr double kSure = 4.0;
+    const double sure = vegetation.threshold + kSure * parameters.index_scale;
+    weight_of_network =
+        parameters.network_weight *
+        std::pow(agreement(logit, vegetation.index, sure, bias), parameters.agreement_exponent);
+  }
+  const auto weight = static_cast<float>(weight_of_network);
   const auto cut = index_too ? static_cast<float>(parameters.network_logit_max)
                              : std::numeric_limits<float>::max();
   cv::Mat mask(vegetation.index.size(), CV_8U);

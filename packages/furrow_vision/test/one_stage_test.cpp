@@ -148,6 +148,7 @@ TEST(FuseVegetation, IndexAndNetworkOverruleEachOther) {
   VegetationFusionParameters p;
   p.index_scale = 10.0;
   p.network_logit_max = 3.0;
+  p.agreement_exponent = 0.0;
   p.index.median_px = 1;
   // Evidence of the index: -1.05, -1.05, 1.95, cut to 6.
   const cv::Mat logit = (cv::Mat_<float>(1, 4) << 1.0f, 1.1f, -2.0f, -50.0f);
@@ -161,6 +162,29 @@ TEST(FuseVegetation, IndexAndNetworkOverruleEachOther) {
   EXPECT_TRUE(same(mask_of("index"), (cv::Mat_<std::uint8_t>(1, 4) << 0, 0, 1, 1)));
   vegetation.found = false;
   EXPECT_TRUE(same(mask_of("both"), (cv::Mat_<std::uint8_t>(1, 4) << 1, 1, 0, 0)));
+}
+
+TEST(FuseVegetation, ANetworkThatMissesWhatIsSureIsHeldBack) {
+  Vegetation vegetation;
+  vegetation.threshold = 100;
+  vegetation.found = true;
+  vegetation.index = (cv::Mat_<std::uint8_t>(1, 5) << 105, 150, 150, 150, 150);
+  vegetation.mask = vegetation.index > 100;
+  VegetationFusionParameters p;
+  p.index_scale = 5.0;  // sure from 120 on
+  p.index.median_px = 1;
+  const auto first_is_plant = [&](int seen) {
+    cv::Mat logit(1, 5, CV_32F, cv::Scalar(-4.0));
+    logit.colRange(1, 1 + seen) = 4.0;
+    return fuse_vegetation(logit, vegetation, p).at<std::uint8_t>(0, 0) != 0;
+  };
+  // The index gives 4.5 / 5 = 0.9; the network takes 4 times the share that it sees to the power.
+  p.agreement_exponent = 4.0;
+  EXPECT_FALSE(first_is_plant(4));  // 0.9 - 4
+  EXPECT_FALSE(first_is_plant(3));  // 0.9 - 4 * 0.316
+  EXPECT_TRUE(first_is_plant(2));   // 0.9 - 4 * 0.0625
+  p.agreement_exponent = 0.0;
+  EXPECT_FALSE(first_is_plant(2));
 }
 
 /// The network that test/data/make_one_stage.py makes: at 2 mm a pixel, cells of 4.

@@ -21,6 +21,18 @@ BOX_WEIGHTS = (10.0, 10.0, 5.0, 5.0)
 FEATURES = ["0", "1", "2", "3"]
 
 
+class Pyramid(FeaturePyramidNetwork):
+    """With fixed factors between its levels, which OpenCV can read; sides are multiples of 32."""
+
+    def forward(self, x):
+        top, maps = None, {}
+        for i in reversed(range(len(FEATURES))):
+            side = self.inner_blocks[i](x[FEATURES[i]])
+            top = side if top is None else side + F.interpolate(top, scale_factor=2, mode="nearest")
+            maps[FEATURES[i]] = self.layer_blocks[i](top)
+        return {name: maps[name] for name in FEATURES}
+
+
 class Backbone(nn.Module):
     """Maps of strides 4, 8, 16, 32. Takes the weights of a trained one-stage network."""
 
@@ -30,7 +42,7 @@ class Backbone(nn.Module):
         self.down2, self.down4, self.down8 = body.down2, body.down4, body.down8
         self.down16, self.down32 = body.down16, body.down32
         inputs = [lateral.in_channels for lateral in body.lateral]
-        self.pyramid = FeaturePyramidNetwork(inputs, CHANNELS)
+        self.pyramid = Pyramid(inputs, CHANNELS)
 
     def forward(self, x):
         features, maps = self.down2(x), {}

@@ -14,7 +14,8 @@ struct VegetationFusionParameters {
   double plant_threshold = 0.5;
   double network_weight = 1.0;
   double network_logit_max = 4.0;
-  double index_scale = 8.0;
+  double agreement_exponent = 30.0;
+  double index_scale = 3.0;
   VegetationParameters index;
   void visit(ParameterVisitor& v);
 };
@@ -23,9 +24,12 @@ struct VegetationFusionParameters {
 /// "plant" (CV_32F, any size; it covers the same view) and the vegetation index, which is fine at
 /// the edges and holds on plants and light that the network never saw. With "both" a pixel is
 /// vegetation when
-///   network_weight * clamp(logit, +-network_logit_max) - logit(plant_threshold)
-///     + clamp((index - threshold) / index_scale, +-2 network_logit_max) > 0;
-/// an image in which the index finds soil only takes the network alone.
+///   w * clamp(logit, +-network_logit_max) - logit(plant_threshold)
+///     + clamp((index - threshold) / index_scale, +-2 network_logit_max) > 0,
+/// where w is network_weight times r^agreement_exponent, r the share of the pixels that the index
+/// is sure of (four units above the threshold) in which the network sees plants too: one that
+/// misses many of them is probably shown what it was not trained for. An image in which the index
+/// finds soil only takes the network alone.
 [[nodiscard]] cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation,
                                       const VegetationFusionParameters& parameters);
 
