@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -14,6 +15,7 @@ namespace furrow::cli {
 namespace {
 
 using components::CalibratedNozzle;
+using components::LandingOffsets;
 
 struct CalibrateOptions {
   std::string graph = "weeding";
@@ -22,6 +24,7 @@ struct CalibrateOptions {
   int rounds = 2;
   std::uint64_t seed = 1;
   double limit_mm = 4.0;
+  std::string measured;
   std::string out = "nozzles.yaml";
   std::string json;
 };
@@ -38,7 +41,7 @@ struct Row {
 
 constexpr double kMmPerM = 1000.0;
 
-double p95_mm(const PatternLandings& landings, const std::string& axis) {
+double p95_mm(const LandingOffsets& landings, const std::string& axis) {
   const auto of_axis = landings.find(axis);
   if (of_axis == landings.end()) return NAN;
   const auto p95_m = actuation::distance_quantile_m(of_axis->second, 0.95);
@@ -47,7 +50,7 @@ double p95_mm(const PatternLandings& landings, const std::string& axis) {
 
 /// The calibrations that the landings ask for. Throws when a nozzle's do not tell.
 std::vector<CalibratedNozzle> fitted(std::vector<CalibratedNozzle> nozzles,
-                                     const PatternLandings& landings) {
+                                     const LandingOffsets& landings) {
   for (CalibratedNozzle& nozzle : nozzles) {
     const auto of_axis = landings.find(nozzle.axis);
     if (of_axis == landings.end()) {
@@ -72,7 +75,8 @@ std::string table_of(const std::vector<Row>& rows) {
                          number(kMmPerM * row.after.open_delay_s, 2) + " ms",
                      number(kMmPerM * row.after.offset_x_m, 2) + " mm",
                      number(kMmPerM * row.after.offset_y_m, 2) + " mm",
-                     number(row.before_p95_mm, 2) + " mm", number(row.after_p95_mm, 2) + " mm"});
+                     number(row.before_p95_mm, 2) + " mm",
+                     std::isnan(row.after_p95_mm) ? "-" : number(row.after_p95_mm, 2) + " mm"});
   }
   return text_table(lines);
 }
@@ -106,16 +110,47 @@ void write(const std::string& path, const std::string& text) {
   if (!written.ok()) throw std::runtime_error(written.error().message);
 }
 
+/// By what somebody measured on paper; nozzles that were not measured stay as they are.
+int calibrate_by_measurements(const CalibrateOptions& options, const PreparedGraph& prepared) {
+  const LandingOffsets landings = components::load_landing_offsets(options.measured);
+  const auto before = nozzles_of(prepared);
+  std::vector<CalibratedNozzle> measured;
+  for (const CalibratedNozzle& nozzle : before) {
+    if (landings.contains(nozzle.axis)) measured.push_back(nozzle);
+  }
+  if (measured.size() != landings.size()) {
+    throw ConfigError({options.measured, 0}, "axis", "names a nozzle that the graph does not have");
+  }
+  measured = fitted(std::move(measured), landings);
+  std::vector<CalibratedNozzle> after = before;
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const auto fit = std::ranges::find(measured, before[i].axis, &CalibratedNozzle::axis);
+    if (fit == measured.end()) continue;
+    after[i] = *fit;
+    rows.push_back({before[i].axis, landings.at(before[i].axis).size(),
+                    p95_mm(landings, before[i].axis), NAN, before[i].calibration,
+                    fit->calibration});
+  }
+  std::cout << table_of(rows);
+  if (!options.json.empty()) write(options.json, json_of(rows, options));
+  write(options.out,
+        components::nozzle_file_text(after, "Written by furrow calibrate from measured offsets."));
+  std::cout << "calibration: " << options.out << '\n';
+  return 0;
+}
+
 int calibrate(const CalibrateOptions& options) {
   if (std::filesystem::is_directory(options.out)) {
     throw ConfigError("--out: " + options.out + " is a folder");
   }
   const PreparedGraph prepared = prepare_graph(options.graph, options.settings);
+  if (!options.measured.empty()) return calibrate_by_measurements(options, prepared);
   const PatternOptions pattern{.sprays = options.sprays, .seed = options.seed};
   const auto before = nozzles_of(prepared);
-  const PatternLandings first = run_pattern(prepared, before, pattern);
+  const LandingOffsets first = run_pattern(prepared, before, pattern);
   auto nozzles = before;
-  PatternLandings landings = first;
+  LandingOffsets landings = first;
   for (int round = 0; round < options.rounds; ++round) {
     nozzles = fitted(std::move(nozzles), landings);
     landings = run_pattern(prepared, nozzles, pattern);
@@ -146,7 +181,8 @@ int calibrate(const CalibrateOptions& options) {
 void add_calibrate_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Sprays a test pattern in the simulator and calibrates the nozzles by it.");
+      "calibrate",
+      "Calibrates the nozzles by a test pattern, sprayed in the simulator or measured on paper.");
   command->add_option("--graph", options->graph, "graph file, or the name of a shipped one")
       ->capture_default_str();
   command
@@ -166,6 +202,9 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
                    "a nozzle that lands farther off in the end (p95) is an error")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
+  command->add_option("--measured", options->measured,
+                      "offsets measured on paper (axis,speed_mps,along_mm,across_mm) in place of "
+                      "the simulator's");
   command->add_option("--out", options->out, "calibration file")->capture_default_str();
   command->add_option("--json", options->json, "the figures, for other programs");
   command->callback([options, &exit_code] { exit_code = calibrate(*options); });

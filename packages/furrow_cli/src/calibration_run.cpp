@@ -42,7 +42,7 @@ double pattern_length_m(int sprays) {
 class TestPattern final : public graph::Component {
  public:
   TestPattern(graph::Context& context, const geometry::ToolModel& tool, int sprays,
-              PatternLandings& landings)
+              components::LandingOffsets& landings)
       : landings_(landings),
         plan_out_(context.output<topics::Plan>()),
         tracks_out_(context.output<topics::Tracks>()),
@@ -95,7 +95,7 @@ class TestPattern final : public graph::Component {
   }
 
  private:
-  PatternLandings& landings_;
+  components::LandingOffsets& landings_;
   graph::Output<topics::Plan> plan_out_;
   graph::Output<topics::Tracks> tracks_out_;
   graph::Output<topics::PlannerHeartbeat> heartbeat_out_;
@@ -197,11 +197,11 @@ std::vector<CalibratedNozzle> nozzles_of(const PreparedGraph& prepared) {
   return nozzles;
 }
 
-PatternLandings run_pattern(const PreparedGraph& prepared,
-                            const std::vector<CalibratedNozzle>& nozzles,
-                            const PatternOptions& options) {
+components::LandingOffsets run_pattern(const PreparedGraph& prepared,
+                                       const std::vector<CalibratedNozzle>& nozzles,
+                                       const PatternOptions& options) {
   const auto tool = geometry::load_tool_model(graph::common_text(prepared.spec, "tool_file"));
-  PatternLandings landings;
+  components::LandingOffsets landings;
   for (std::size_t i = 0; i < options.speeds_mps.size(); ++i) {
     graph::Registry registry = make_registry();
     graph::ComponentClass type{.name = "test_pattern"};

@@ -1,18 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <string>
 #include <vector>
 
-#include "furrow_actuation/nozzle_fit.hpp"
+#include "furrow_components/landing_offsets.hpp"
 #include "furrow_components/nozzle_file.hpp"
 #include "graph_setup.hpp"
 
 namespace furrow::cli {
-
-/// What a test pattern left on the ground, by axis.
-using PatternLandings = std::map<std::string, std::vector<actuation::LandingOffset>>;
 
 struct PatternOptions {
   std::vector<double> speeds_mps = {0.3, 0.6, 0.9};
@@ -24,9 +19,9 @@ struct PatternOptions {
 /// time: each axis sprays single points whose places it is told, with these calibrations, at the
 /// true pose. Of the graph only the robot simulator and the axis drivers are used. Throws
 /// ConfigError when the graph has no simulated robot or no axis drivers.
-[[nodiscard]] PatternLandings run_pattern(const PreparedGraph& prepared,
-                                          const std::vector<components::CalibratedNozzle>& nozzles,
-                                          const PatternOptions& options);
+[[nodiscard]] components::LandingOffsets run_pattern(
+    const PreparedGraph& prepared, const std::vector<components::CalibratedNozzle>& nozzles,
+    const PatternOptions& options);
 
 /// The calibrations that the drivers of the graph would start with, in the order of its axes.
 [[nodiscard]] std::vector<components::CalibratedNozzle> nozzles_of(const PreparedGraph& prepared);
