@@ -2,6 +2,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "allocation_count.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "experiment_options.hpp"
@@ -13,11 +14,12 @@ namespace {
 
 void print_rows(const std::vector<experiments::BenchmarkRow>& rows) {
   std::vector<std::vector<std::string>> table = {
-      {"planner", "per m2", "targets", "p50 us", "p99 us", "plans"}};
+      {"planner", "per m2", "targets", "p50 us", "p99 us", "plans", "allocations"}};
   for (const auto& row : rows) {
     table.push_back({row.planner, number(row.weeds_per_m2, 1), number(row.targets, 0),
                      number(row.replan_p50_us, 1), number(row.replan_p99_us, 1),
-                     std::to_string(row.replans)});
+                     std::to_string(row.replans),
+                     row.allocations_per_replan ? number(*row.allocations_per_replan, 2) : "-"});
   }
   std::cout << text_table(table);
 }
@@ -29,6 +31,7 @@ void bench_planner(const ExperimentOptions& options) {
   benchmark.planner = options.planner;
   benchmark.setup = options.setup;
   benchmark.sampling = options.sampling;
+  benchmark.allocations = thread_allocations;
   ProgressBar bar("planner");
   const auto result = run(benchmark, [&bar](double share) { bar.show(share, ""); });
   bar.finish();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "command.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 using experiments::EvaluationRow;
 
-constexpr std::int64_t kSweepSeeds = 4;
+constexpr std::int64_t kSweepSeeds = 10;
 
 std::string or_dash(const std::optional<double>& value, int decimals) {
   return value ? number(*value, decimals) : "-";
@@ -108,14 +109,16 @@ void add_eval_command(CLI::App& app, int& /*exit_code*/) {
   CLI::App* command = group(app, "eval", "The experiments, the paper's figures beside ours.");
 
   auto observation = std::make_shared<ExperimentOptions>();
-  auto sweeps = std::make_shared<bool>(false);
+  auto sweeps = std::make_shared<std::optional<bool>>();
   CLI::App* observation_command = command->add_subcommand(
       "observation", "Loss and travel by weed density, observation model and planner.");
   add_experiment_options(observation_command, *observation);
-  observation_command->add_flag("--sweeps", *sweeps,
-                                "also vary robot speed, axes, axis velocity and omega");
-  observation_command->callback(
-      [observation, sweeps] { evaluate_observation(*observation, *sweeps); });
+  observation_command->add_flag("--sweeps,!--no-sweeps", *sweeps,
+                                "also vary robot speed, axes, axis velocity and omega; without "
+                                "being told, when there is a report to show them");
+  observation_command->callback([observation, sweeps] {
+    evaluate_observation(*observation, sweeps->value_or(!observation->html.empty()));
+  });
 
   auto biodiversity = std::make_shared<ExperimentOptions>();
   biodiversity->planner.speed_mps = experiments::BiodiversityExperiment().planner.speed_mps;
