@@ -95,13 +95,22 @@ class DeploymentCase(FurrowCase):
 class SameOutcomeTest(DeploymentCase):
     LENGTH_M = 3
 
-    def test_composed_and_distributed_give_the_same_ledger(self):
+    def test_composed_distributed_and_from_a_recording_give_the_same_ledger(self):
+        """The recording is made by the distributed run, and played in both deployments."""
+        recorded = self.folder / "recorded"
+        played = [*GRAPH, "--recording", self.folder / "recorded_0.mcap"]
         self.run_graph(*GRAPH, "--length", self.LENGTH_M, out=self.folder / "composed")
-        up = self.up("--clock", "lockstep", "--length", self.LENGTH_M)
+        up = self.up("--clock", "lockstep", "--length", self.LENGTH_M, "--record", recorded,
+                     out=self.folder / "distributed")
         self.assertEqual(up.finish(250), 0, up.text())
-        for name in ("ledger.csv", "map.svg"):
-            self.assertEqual((self.out / name).read_bytes(),
-                             (self.folder / "composed" / name).read_bytes(), name)
+        self.run_graph(*played, out=self.folder / "from recording")
+        up = self.up("--clock", "lockstep", *played[4:],
+                     out=self.folder / "distributed from recording")
+        self.assertEqual(up.finish(250), 0, up.text())
+        for other in ("distributed", "from recording", "distributed from recording"):
+            for name in ("ledger.csv", "map.svg"):
+                self.assertEqual((self.folder / other / name).read_bytes(),
+                                 (self.folder / "composed" / name).read_bytes(), (other, name))
 
     def test_a_death_ends_a_run_in_lock_step(self):
         up = self.up("--clock", "lockstep", "--length", 20)
@@ -165,16 +174,18 @@ class RealTimeTest(DeploymentCase):
             self.assertFalse(pathlib.Path(f"/proc/{pid}").exists())
 
     def test_thirty_late_joiners_and_garbage_do_no_harm(self):
-        up = self.up("--length", 8)
-        up.wait_for("weeding 2")
+        # Long enough for a busy machine: everybody joins while it runs.
+        up = self.up("--length", 24)
+        up.wait_for("weeding 1")
         stop = threading.Event()
         flood = threading.Thread(target=self.throw_garbage, args=(stop,))
         flood.start()
         self.addCleanup(flood.join)
         self.addCleanup(stop.set)
         # A few at a time: it is not the computing power that is tried here.
-        for _ in range(10):
-            self.join_late(3)
+        for _ in range(6):
+            self.join_late(5)
+            self.assertIsNone(up.process.poll(), "the run ended before everybody had joined")
         stop.set()
         self.assertEqual(up.finish(), 0, up.text())
         self.assertNotIn("signal", up.text())

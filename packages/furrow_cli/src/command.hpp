@@ -19,6 +19,11 @@ void add_eval_trial_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_up_command(CLI::App& app, int& exit_code);
 void add_topic_command(CLI::App& app, int& exit_code);
+void add_record_command(CLI::App& app, int& exit_code);
+void add_play_command(CLI::App& app, int& exit_code);
+void add_bag_command(CLI::App& app, int& exit_code);
+void add_bench_graph_command(CLI::App& app, int& exit_code);
+void add_bench_recording_command(CLI::App& app, int& exit_code);
 
 void add_detect_command(CLI::App& app, int& exit_code);
 void add_eval_vision_command(CLI::App& app, int& exit_code);

@@ -22,6 +22,11 @@ int main(int argc, char** argv) {
   furrow::cli::add_eval_trial_command(app, exit_code);
   furrow::cli::add_bench_command(app, exit_code);
   furrow::cli::add_topic_command(app, exit_code);
+  furrow::cli::add_record_command(app, exit_code);
+  furrow::cli::add_play_command(app, exit_code);
+  furrow::cli::add_bag_command(app, exit_code);
+  furrow::cli::add_bench_graph_command(app, exit_code);
+  furrow::cli::add_bench_recording_command(app, exit_code);
   furrow::cli::add_detect_command(app, exit_code);
   furrow::cli::add_eval_vision_command(app, exit_code);
   furrow::cli::add_bench_vision_command(app, exit_code);

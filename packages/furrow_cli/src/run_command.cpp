@@ -16,6 +16,7 @@
 #include "graph_setup.hpp"
 #include "run_observer.hpp"
 #include "run_options.hpp"
+#include "run_recordings.hpp"
 #include "run_summary.hpp"
 #include "share.hpp"
 #include "signals.hpp"
@@ -147,7 +148,8 @@ void wait_for_others(const graph::Runtime& runtime, const std::atomic<bool>& int
 
 int run(const ProcessOptions& process_options) {
   const RunOptions& options = process_options.run;
-  PreparedGraph prepared = prepare_graph(options.graph, all_settings(options));
+  graph::Registry registry = make_registry();
+  PreparedGraph prepared = prepare_run(options, registry);
   const auto deployment = prepare_deployment(options);
   const auto placed = graph::place_components(prepared.spec, deployment);
   const graph::PlacedProcess& process = pick_process(placed, deployment, process_options.process);
@@ -164,7 +166,6 @@ int run(const ProcessOptions& process_options) {
                  number(status.distance_m(), 1) + " m, " + number(status.speed_mps(), 2) + " m/s");
       },
       end, several && end == RunEnd::kRecord && !options.lockstep());
-  graph::Registry registry = make_registry();
   observer.add_to(prepared.spec, registry);
   std::vector<std::string> mine = process.components;
   mine.emplace_back(RunObserver::component_name());

@@ -37,6 +37,14 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command.add_option("--out", options.out, "folder of the report")->capture_default_str();
+  command.add_option("--record", options.record,
+                     "record the topics of the run into this path with _0.mcap added; see the "
+                     "parameters of recorder");
+  command
+      .add_option("--recording", options.recordings,
+                  "play camera and odometry from these MCAP files in place of the simulator; see "
+                  "the parameters of playback")
+      ->take_all();
 }
 
 std::vector<std::string> all_settings(const RunOptions& options) {
@@ -75,6 +83,8 @@ std::vector<std::string> arguments_of(const RunOptions& options) {
   if (!options.field.empty()) arguments.push_back("--field=" + options.field);
   if (!options.ground.empty()) arguments.push_back("--ground=" + options.ground);
   if (options.length_m) arguments.push_back("--length=" + number(*options.length_m, 6));
+  if (!options.record.empty()) arguments.push_back("--record=" + options.record);
+  for (const std::string& file : options.recordings) arguments.push_back("--recording=" + file);
   for (const std::string& setting : options.settings) arguments.push_back("--set=" + setting);
   for (const std::string& setting : options.wire) arguments.push_back("--wire=" + setting);
   for (const std::string& address : options.addresses) {

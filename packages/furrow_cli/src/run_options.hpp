@@ -24,6 +24,8 @@ struct RunOptions {
   std::string clock = "real";
   int threads = 2;
   std::string out = "out/run";
+  std::string record;                   ///< path of the recording to make
+  std::vector<std::string> recordings;  ///< files to play in place of robot and camera
 
   [[nodiscard]] bool lockstep() const { return clock == "lockstep"; }
 };

@@ -42,6 +42,7 @@ graph::Registry make_registry() {
     }
   }
   registry.add_search_folder(FURROW_COMPONENT_FOLDER);
+  registry.add_search_folder(FURROW_RECORDING_FOLDER);
   return registry;
 }
 

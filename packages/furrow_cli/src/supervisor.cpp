@@ -1,7 +1,6 @@
 #include "supervisor.hpp"
 
 #include <poll.h>
-#include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,13 +28,6 @@ Time steady_now() {
                                     .count());
 }
 
-sigset_t watched() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&set, signal);
-  return set;
-}
-
 std::string how_it_ended(int wait_status) {
   if (WIFSIGNALED(wait_status)) {
     return "was ended by signal " + std::to_string(WTERMSIG(wait_status));
@@ -55,29 +47,21 @@ struct Supervisor::Entry {
 
 Supervisor::Supervisor(std::vector<SupervisedProcess> processes,
                        std::function<std::vector<std::string>()> on_tick)
-    : on_tick_(std::move(on_tick)) {
+    : on_tick_(std::move(on_tick)), signals_({SIGINT, SIGTERM, SIGCHLD}) {
   for (SupervisedProcess& process : processes) {
     name_width_ = std::max(name_width_, process.name.size());
     entries_.push_back({.process = std::move(process)});
   }
-  const sigset_t set = watched();
-  signals_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
 }
 
 Supervisor::~Supervisor() {
   entries_.clear();
-  if (signals_ >= 0) close(signals_);
-}
-
-void Supervisor::block_signals() {
-  const sigset_t set = watched();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
 int Supervisor::run() {
   for (Entry& entry : entries_) start(entry);
   while (any_alive()) {
-    std::vector<pollfd> polled = {{signals_, POLLIN, 0}};
+    std::vector<pollfd> polled = {{signals_.fd(), POLLIN, 0}};
     for (const Entry& entry : entries_) {
       if (entry.child) polled.push_back({entry.child->output(), POLLIN, 0});
     }
@@ -108,9 +92,8 @@ void Supervisor::start(Entry& entry) {
 }
 
 void Supervisor::take_signals() {
-  signalfd_siginfo info{};
-  while (read(signals_, &info, sizeof info) == sizeof info) {
-    if (info.ssi_signo == SIGCHLD) continue;
+  while (const int signal = signals_.take()) {
+    if (signal == SIGCHLD) continue;
     if (!stopping_) say("", "interrupted: stopping all processes");
     result_ = 1;
     stop(kStopGrace);

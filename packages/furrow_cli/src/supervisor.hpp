@@ -6,6 +6,7 @@
 
 #include "child_process.hpp"
 #include "restart_policy.hpp"
+#include "signals.hpp"
 
 namespace furrow::cli {
 
@@ -27,10 +28,6 @@ class Supervisor {
   ~Supervisor();
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
-
-  /// Blocks SIGINT, SIGTERM and SIGCHLD for the calling thread and those that it makes; to be
-  /// called before any other thread is there.
-  static void block_signals();
 
   /// Exit code for the user: that of the process that reports, else 0 when the run was finished.
   [[nodiscard]] int run();
@@ -54,7 +51,7 @@ class Supervisor {
   std::vector<Entry> entries_;
   std::function<std::vector<std::string>()> on_tick_;
   std::size_t name_width_ = 0;
-  int signals_ = -1;
+  SignalPipe signals_;
   bool stopping_ = false;
   bool finished_ = false;  // some process saw the end of the run
   int result_ = 0;

@@ -9,6 +9,7 @@
 #include "furrow_graph/graph_check.hpp"
 #include "graph_setup.hpp"
 #include "run_options.hpp"
+#include "run_recordings.hpp"
 #include "share.hpp"
 #include "supervisor.hpp"
 #include "supervisor_wire.hpp"
@@ -48,7 +49,7 @@ std::unique_ptr<dds::DiscoveryServer> make_discovery_server(const graph::Deploym
 
 int up(const UpOptions& options) {
   graph::Registry registry = make_registry();
-  const PreparedGraph prepared = prepare_graph(options.run.graph, all_settings(options.run));
+  const PreparedGraph prepared = prepare_run(options.run, registry);
   (void)graph::check_graph(prepared.spec, registry);
   const auto deployment = prepare_deployment(options.run);
   const auto placed = graph::place_components(prepared.spec, deployment);
@@ -74,7 +75,6 @@ int up(const UpOptions& options) {
                          .restart = process.restart && !options.run.lockstep(),
                          .reports = scores(process)});
   }
-  Supervisor::block_signals();
   const auto server = make_discovery_server(deployment, host, wire);
   SupervisorWire watch(wire, options.resume);
   Supervisor supervisor(std::move(processes), [&watch] { return watch.tick(); });

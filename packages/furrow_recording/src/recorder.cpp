@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBytesPerMb = 1e6;
 /// The disk's space is asked for after so many bytes.
-constexpr std::uint64_t kSpaceCheckBytes = 16'000'000;
+constexpr std::uint64_t kSpaceCheckBytes = 1'000'000;
 /// Latched messages of one topic that are kept for a late beginning.
 constexpr std::size_t kMaxLatched = 100;
 

@@ -11,14 +11,14 @@
 namespace furrow::recording {
 
 struct DdsPlayerOptions {
-  /// Wait this long at most for a reader of any topic before the first message; volatile messages
-  /// without a reader are gone.
+  /// Wait this long at most for a reader of any topic before the first message, and until no more
+  /// come; volatile messages without a reader are gone.
   Duration wait_for_readers;
 };
 
 struct DdsPlayerStatus {
   std::uint64_t messages = 0;
-  std::uint64_t dropped = 0;  ///< the wire refused them, or its queue was full
+  std::uint64_t dropped = 0;  ///< the wire refused them
   std::uint64_t faults = 0;   ///< damaged chunks left out
   std::string last_fault;
   double lateness_p99_s = 0.0;  ///< of the last 4096 messages, against their due time

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <thread>
+
+namespace furrow::cli {
+
+/// Calls back on a thread of its own with each line that comes on standard input, while it lives.
+/// An input that has ended, or is not there, is passed over.
+class ControlInput {
+ public:
+  explicit ControlInput(std::function<void(const std::string&)> on_line);
+  ~ControlInput();
+  ControlInput(const ControlInput&) = delete;
+  ControlInput& operator=(const ControlInput&) = delete;
+
+ private:
+  void run(const std::function<void(const std::string&)>& on_line) const;
+  int wake_[2] = {-1, -1};
+  std::thread thread_;
+};
+
+}  // namespace furrow::cli

@@ -1,0 +1,345 @@
+#include "graph_benchmark.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "child_process.hpp"
+#include "furrow_core/file.hpp"
+#include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/builtin_interfaces.h"
+#include "furrow_msgs/furrow_msgs.h"
+#include "furrow_recording/mcap_reader.hpp"
+#include "latency_graph.hpp"
+#include "signals.hpp"
+
+namespace furrow::cli {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr char kRawTopic[] = "bench/raw";
+/// A reader finds its writer a little later than the writer finds it; what is sent between is lost.
+constexpr milliseconds kSettle{1500};
+
+/// A folder of this process alone, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("furrow_bench_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+LatencyLoad load_of(std::size_t bytes, double scale) {
+  LatencyLoad load;
+  load.bytes = bytes;
+  const bool small = bytes <= 10'000;
+  const bool large = bytes > 2'000'000;
+  load.period = Duration::milliseconds(small ? 4 : large ? 50 : 15);
+  load.messages = std::max(30, static_cast<int>(scale * (small ? 1500 : large ? 200 : 500)));
+  return load;
+}
+
+GraphBenchmarkRow row(const std::string& path, const LatencyLoad& load,
+                      const std::vector<double>& times_us, std::size_t received) {
+  const auto sent = static_cast<std::size_t>(load.messages);
+  return {.path = path,
+          .bytes = load.bytes,
+          .p50_us = quantile(times_us, 0.5),
+          .p99_us = quantile(times_us, 0.99),
+          .messages = sent,
+          .lost = sent - std::min(sent, received)};
+}
+
+GraphBenchmarkRow row(const std::string& path, const LatencyLoad& load, const Latencies& times) {
+  return row(path, load, times.times_us(load.bytes), times.received(load.bytes));
+}
+
+dds::DdsParameters wire_of(const GraphBenchmark& benchmark, const std::string& name) {
+  dds::DdsParameters parameters = wire_parameters(benchmark.wire, name);
+  // Room for the largest on its way more than once.
+  parameters.shm_segment_mb = std::max<std::int64_t>(parameters.shm_segment_mb, 64);
+  return parameters;
+}
+
+template <class Holds>
+void wait_until(Holds holds, const std::string& what,
+                std::chrono::seconds patience = std::chrono::seconds(15)) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(what);
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+}
+
+std::size_t peers(const dds::DdsTransport& transport, const std::string& topic) {
+  std::size_t count = 0;
+  for (const dds::EndpointStatus& endpoint : transport.status()) {
+    if (endpoint.topic == topic && endpoint.writer) count += endpoint.peers > 0 ? 1 : 0;
+  }
+  return count;
+}
+
+std::string own_program() {
+  return std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
+ChildProcess start(std::vector<std::string> command) {
+  // What it prints is not ours to print.
+  command.insert(command.begin(),
+                 {"/bin/sh", "-c", "exec \"$0\" \"$@\" </dev/null >/dev/null 2>&1"});
+  auto child = ChildProcess::start(command);
+  if (!child) throw std::runtime_error(child.error().message);
+  return std::move(child).value();
+}
+
+void wait_for_end(ChildProcess& child, std::chrono::seconds patience, const std::string& what) {
+  int status = 0;
+  wait_until([&] { return child.ended(status); }, what + " does not end", patience);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error(what + " failed");
+}
+
+std::vector<std::string> wire_arguments(const GraphBenchmark& benchmark) {
+  std::vector<std::string> arguments = {"--wire=shm_segment_mb=64"};
+  for (const std::string& setting : benchmark.wire.settings) {
+    arguments.push_back("--wire=" + setting);
+  }
+  return arguments;
+}
+
+ChildProcess start_tool(const GraphBenchmark& benchmark, std::vector<std::string> command) {
+  command.insert(command.begin(), own_program());
+  for (std::string& argument : wire_arguments(benchmark)) command.push_back(std::move(argument));
+  command.push_back("--domain=" + std::to_string(benchmark.wire.domain_id));
+  return start(std::move(command));
+}
+
+void measure_in_process(const GraphBenchmark& benchmark, GraphBenchmarkResult& result) {
+  for (const std::size_t bytes : benchmark.bytes) {
+    const LatencyLoad load = load_of(bytes, benchmark.scale);
+    Latencies latencies;
+    run_latency_graph({.load = load}, latencies);
+    result.payload_copied = !latencies.never_copied();
+    result.rows.push_back(row("in_process", load, latencies));
+  }
+}
+
+/// While a recorder of another process reads everything.
+void measure_observed(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
+                      GraphBenchmarkResult& result) {
+  for (const std::size_t bytes : benchmark.bytes) {
+    const LatencyLoad load = load_of(bytes, benchmark.scale);
+    dds::DdsTransport transport(wire_of(benchmark, "bench_graph"));
+    ChildProcess recorder =
+        start_tool(benchmark, {"record", "camera/image", "--compression=lz4", "--min-free-mb=0",
+                               "--out=" + scratch.file("observed_" + std::to_string(bytes))});
+    Latencies latencies;
+    run_latency_graph({.load = load, .transport = &transport}, latencies,
+                      [&transport](graph::Runtime&) {
+                        wait_until([&] { return peers(transport, "camera/image") == 1; },
+                                   "the recorder does not come");
+                        std::this_thread::sleep_for(kSettle);
+                      });
+    recorder.send(SIGTERM);
+    wait_for_end(recorder, std::chrono::seconds(20), "furrow record");
+    result.rows.push_back(row("in_process_observed", load, latencies));
+  }
+}
+
+/// Fast DDS from one participant to another of the same process, which it delivers without a wire.
+void measure_fastdds_in_process(const GraphBenchmark& benchmark, GraphBenchmarkResult& result) {
+  const msgs::Topic& topic = msgs::topics::CameraImage::topic();
+  const std::string type(topic.type->dds_name);
+  for (const std::size_t bytes : benchmark.bytes) {
+    const LatencyLoad load = load_of(bytes, benchmark.scale);
+    dds::DdsTransport from(wire_of(benchmark, "bench_graph"));
+    dds::DdsTransport to(wire_of(benchmark, "bench_graph_reader"));
+    Latencies latencies;
+    const auto reader = to.make_raw_reader(
+        kRawTopic, type, topic.qos,
+        [&latencies](dds::RawMessage message) { add_payload(latencies, message.payload); });
+    const auto writer = from.make_raw_writer(kRawTopic, type, topic.qos);
+    wait_until([&] { return writer->has_readers() && reader->writers() == 1; },
+               "the reader does not come");
+    std::this_thread::sleep_for(kSettle);
+    std::vector<std::byte> payload = image_payload(bytes);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto period = std::chrono::nanoseconds(load.period.count_ns());
+    for (int i = 0; i < load.messages; ++i) {
+      std::this_thread::sleep_until(begin + i * period);
+      stamp_payload(payload, static_cast<std::uint32_t>(i), steady_now());
+      (void)writer->write_now(payload);
+    }
+    (void)from.flush(Duration::milliseconds(2000));
+    std::this_thread::sleep_for(milliseconds(100));
+    result.rows.push_back(row("fastdds_in_process", load, latencies));
+  }
+}
+
+/// Furrow and plain Fast DDS take turns, so that both have the same conditions.
+void measure_two_processes(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
+                           GraphBenchmarkResult& result) {
+  const msgs::Topic& topic = msgs::topics::CameraImage::topic();
+  const std::string file = scratch.file("peer.json");
+  std::vector<LatencyLoad> loads;
+  {
+    ChildProcess peer = start_tool(benchmark, {"bench", "graph-peer", "--json=" + file});
+    dds::DdsTransport transport(wire_of(benchmark, "bench_graph"));
+    const auto raw =
+        transport.make_raw_writer(kRawTopic, std::string(topic.type->dds_name), topic.qos);
+    for (const std::size_t bytes : benchmark.bytes) {
+      const LatencyLoad load = loads.emplace_back(load_of(bytes, benchmark.scale));
+      std::vector<std::byte> payload = image_payload(bytes);
+      Latencies none;
+      LatencyGraph graph;
+      graph.sink = false;
+      graph.load = load;
+      graph.transport = &transport;
+      graph.between = [&](std::uint32_t number) {
+        stamp_payload(payload, number, steady_now());
+        (void)raw->write_now(payload);
+      };
+      run_latency_graph(graph, none, [&](graph::Runtime&) {
+        wait_until([&] { return raw->has_readers() && peers(transport, "camera/image") == 1; },
+                   "the other process does not come");
+        std::this_thread::sleep_for(kSettle);
+      });
+      (void)transport.flush(Duration::milliseconds(2000));
+    }
+    std::this_thread::sleep_for(milliseconds(300));
+    peer.send(SIGTERM);
+    wait_for_end(peer, std::chrono::seconds(20), "the other process");
+  }
+  const auto text = read_file(file);
+  if (!text) throw std::runtime_error(text.error().message);
+  const auto measured = nlohmann::json::parse(*text);
+  for (const char* path : {"two_processes", "fastdds_two_processes"}) {
+    for (const LatencyLoad& load : loads) {
+      const auto& of_size = measured.at(path).at(std::to_string(load.bytes));
+      result.rows.push_back(row(path, load, of_size.at("us").get<std::vector<double>>(),
+                                of_size.at("received").get<std::size_t>()));
+    }
+  }
+}
+
+/// From the stamp of a frame to its plan at a reader that lives as the axis drivers do: in the same
+/// process, or in one of its own.
+GraphBenchmarkRow read_plans(const std::string& path, const std::string& file) {
+  auto source = mcap::open_file(file);
+  if (!source) throw std::runtime_error(source.error().message);
+  const auto reader = mcap::Reader::open(std::move(*source));
+  if (!reader) throw std::runtime_error(reader.error().message);
+  const msgs::MessageType& type = *msgs::topics::Plan::topic().type;
+  std::vector<double> times_us;
+  mcap::MessageCursor cursor = reader->messages();
+  while (true) {
+    const auto next = cursor.next();
+    if (!next) throw std::runtime_error(next.error().message);
+    if (!next->has_value()) break;
+    furrow_msgs::msg::Plan plan;
+    if (!type.deserialize((*next)->data, &plan).ok()) continue;
+    const Time stamp = graph::from_msg(plan.header().stamp());
+    times_us.push_back(((*next)->log_time - stamp).to_seconds() * 1e6);
+  }
+  return {.path = path,
+          .p50_us = quantile(times_us, 0.5),
+          .p99_us = quantile(times_us, 0.99),
+          .messages = times_us.size()};
+}
+
+void measure_end_to_end(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
+                        GraphBenchmarkResult& result) {
+  for (const std::string name : {"composed", "distributed"}) {
+    const std::string stem = scratch.file(name);
+    std::vector<std::string> command = {own_program(),
+                                        name == "composed" ? "run" : "up",
+                                        "--deploy=" + name,
+                                        "--clock=real",
+                                        "--length=" + std::to_string(benchmark.length_m),
+                                        "--seed=" + std::to_string(benchmark.seed),
+                                        "--out=" + scratch.file(name + "_report"),
+                                        "--record=" + stem,
+                                        "--set=recorder.include=[planner/plan]",
+                                        "--set=recorder.min_free_mb=0"};
+    for (std::string& argument : wire_arguments(benchmark)) command.push_back(std::move(argument));
+    command.push_back("--wire=domain_id=" + std::to_string(benchmark.wire.domain_id));
+    ChildProcess run = start(std::move(command));
+    const auto patience = std::chrono::seconds(60 + static_cast<int>(4.0 * benchmark.length_m));
+    wait_for_end(run, patience, "furrow run " + name);
+    result.rows.push_back(read_plans("end_to_end_" + name, stem + "_0.mcap"));
+  }
+}
+
+nlohmann::ordered_json to_json(const Latencies& latencies) {
+  nlohmann::ordered_json json;
+  for (const std::size_t bytes : GraphBenchmark().bytes) {
+    json[std::to_string(bytes)] = {{"us", latencies.times_us(bytes)},
+                                   {"received", latencies.received(bytes)}};
+  }
+  return json;
+}
+
+}  // namespace
+
+GraphBenchmarkResult run_graph_benchmark(const GraphBenchmark& benchmark) {
+  const ScratchFolder scratch;
+  GraphBenchmarkResult result;
+  measure_in_process(benchmark, result);
+  measure_observed(benchmark, scratch, result);
+  measure_fastdds_in_process(benchmark, result);
+  measure_two_processes(benchmark, scratch, result);
+  if (benchmark.length_m > 0.0) measure_end_to_end(benchmark, scratch, result);
+  return result;
+}
+
+void run_graph_benchmark_peer(const WireOptions& wire, const std::string& file) {
+  std::atomic<graph::Runtime*> running = nullptr;
+  std::atomic<bool> stopped = false;
+  SignalWatch signals([&] {
+    stopped = true;
+    if (graph::Runtime* runtime = running) runtime->request_stop("stopped");
+  });
+  GraphBenchmark benchmark;
+  benchmark.wire = wire;
+  Latencies furrow;
+  Latencies raw;
+  dds::DdsTransport transport(wire_of(benchmark, "bench_graph_peer"));
+  const msgs::Topic& topic = msgs::topics::CameraImage::topic();
+  const auto reader = transport.make_raw_reader(
+      kRawTopic, std::string(topic.type->dds_name), topic.qos,
+      [&raw](dds::RawMessage message) { add_payload(raw, message.payload); });
+  LatencyGraph graph;
+  graph.source = false;
+  graph.transport = &transport;
+  run_latency_graph(graph, furrow, [&](graph::Runtime& runtime) {
+    running = &runtime;
+    if (stopped) runtime.request_stop("stopped");
+  });
+  running = nullptr;
+  const nlohmann::ordered_json json = {{"two_processes", to_json(furrow)},
+                                       {"fastdds_two_processes", to_json(raw)}};
+  if (const Status written = write_file_atomically(file, json.dump()); !written) {
+    throw std::runtime_error(written.error().message);
+  }
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "furrow_core/time.hpp"
+#include "furrow_dds/dds_transport.hpp"
+#include "furrow_graph/runtime.hpp"
+
+namespace furrow::cli {
+
+/// What is sent, and how often.
+struct LatencyLoad {
+  std::size_t bytes = 100;  ///< of an image's pixels
+  Duration period = Duration::milliseconds(10);
+  int messages = 1000;
+};
+
+/// Times from publication to the reader's callback.
+class Latencies {
+ public:
+  /// Thread-safe. The number tells messages apart; the stamp is that of steady_now().
+  void add(std::uint32_t number, Time stamp, std::size_t bytes);
+  void note_address(bool same);
+
+  /// Of messages with so many bytes, without the first ten; in us.
+  [[nodiscard]] std::vector<double> times_us(std::size_t bytes) const;
+  [[nodiscard]] std::size_t received(std::size_t bytes) const;
+  /// Every payload was read where it was written.
+  [[nodiscard]] bool never_copied() const;
+
+ private:
+  struct Entry {
+    std::uint32_t number;
+    std::size_t bytes;
+    double us;
+  };
+  mutable std::mutex mutex_;
+  std::vector<Entry> entries_;
+  bool same_address_ = true;
+};
+
+/// The machine's clock that never jumps, the same in all its processes.
+[[nodiscard]] Time steady_now();
+/// Of sorted or unsorted values; 0 when there are none.
+[[nodiscard]] double quantile(std::vector<double> values, double share);
+
+/// The CDR form of an image with so many bytes of pixels, to be stamped by stamp_payload().
+[[nodiscard]] std::vector<std::byte> image_payload(std::size_t bytes);
+void stamp_payload(std::vector<std::byte>& payload, std::uint32_t number, Time stamp);
+/// Adds what came as such a payload.
+void add_payload(Latencies& latencies, const std::vector<std::byte>& payload);
+
+/// A graph of a component that publishes images and, when wanted, one that reads them.
+struct LatencyGraph {
+  bool source = true;
+  bool sink = true;
+  LatencyLoad load;
+  graph::Transport* transport = nullptr;
+  /// Called between two images, half a period after each.
+  std::function<void(std::uint32_t number)> between;
+  /// Records the images into files of this path.
+  std::string record;
+};
+
+/// Runs it in real time until all images are published; a sink alone until `stop` is called with
+/// the runtime given to `started`.
+void run_latency_graph(const LatencyGraph& graph, Latencies& latencies,
+                       const std::function<void(graph::Runtime&)>& started = {});
+
+}  // namespace furrow::cli

@@ -1,0 +1,408 @@
+"""Recordings by the command: made, played, looked at, mended; and faults on the way."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from furrow_case import FurrowCase, furrow_program
+
+# A short row without images: 7 s of simulated time.
+SHORT_RUN = ["--graph", "weeding_true_detections", "--seed", "5", "--length", "1"]
+
+
+def domain():
+    """Of this process, so that runs beside each other do not meet."""
+    return 100 + (os.getpid() + 65) % 130
+
+
+class RecordingCase(FurrowCase):
+    """Has a recording of a run in simulated time, made once."""
+
+    recorded = None
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        case = FurrowCase()
+        case.setUp()
+        cls.addClassCleanup(case.doCleanups)
+        case.run_graph(*SHORT_RUN, "--record", case.folder / "run")
+        cls.recorded = case.folder / "run_0.mcap"
+        cls.first_out = case.out
+
+    def info(self, file):
+        """What `bag info` says of a file, by topic."""
+        table = self.folder / "info.json"
+        done = self.furrow("bag", "info", file, "--json", table)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        row = json.loads(table.read_text())["rows"][0]
+        row["counts"] = {topic["topic"]: topic["messages"] for topic in row["topics"]}
+        return row
+
+    def assert_sound(self, file):
+        done = self.furrow("bag", "verify", file)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("sound", done.stdout)
+
+    def start(self, *arguments, **options):
+        process = subprocess.Popen([furrow_program(), *map(str, arguments)], cwd=self.folder,
+                                   stdin=options.pop("stdin", subprocess.DEVNULL),
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                   **options)
+
+        def end():
+            if process.poll() is None:
+                process.kill()
+            if not process.stdout.closed:
+                process.communicate()
+        self.addCleanup(end)
+        return process
+
+    def start_recorder(self, *arguments, **options):
+        """A recorder that is in the domain."""
+        process = self.start("record", "--domain", domain(), *arguments, **options)
+        line = process.stdout.readline()
+        self.assertIn("_N.mcap", line)
+        return process
+
+    def stop(self, process):
+        process.send_signal(signal.SIGINT)
+        text = process.communicate(timeout=30)[0]
+        return process.returncode, text
+
+    def play(self, *arguments):
+        done = self.furrow("play", "--domain", domain(), *arguments)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+
+class BagTest(RecordingCase):
+    def test_info_tells_what_is_in_it(self):
+        row = self.info(self.recorded)
+        self.assertEqual(row["profile"], "ros2")
+        self.assertEqual(row["damage"], "")
+        self.assertEqual(row["messages"], sum(row["counts"].values()))
+        self.assertEqual(row["counts"]["truth/field"], 1)
+        # 4 m at 0.5 m/s, and the odometry at 100 Hz.
+        self.assertAlmostEqual(row["duration_s"], 8.0, delta=1.0)
+        self.assertAlmostEqual(row["counts"]["wheel/odometry"], 100 * row["duration_s"], delta=2)
+        types = {topic["topic"]: topic for topic in row["topics"]}
+        self.assertEqual(types["wheel/odometry"]["type"], "nav_msgs/msg/Odometry")
+        self.assertEqual(types["truth/field"]["qos"], "reliable, latched")
+
+    def test_a_sound_file_is_called_sound(self):
+        self.assert_sound(self.recorded)
+
+    def test_a_changed_byte_is_found(self):
+        file = self.folder / "changed.mcap"
+        data = bytearray(self.recorded.read_bytes())
+        data[len(data) // 2] ^= 0x10
+        file.write_bytes(data)
+        done = self.furrow("bag", "verify", file)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("changed.mcap: ", done.stdout)
+
+    def test_a_truncated_file_is_recovered_up_to_its_last_whole_chunk(self):
+        whole = self.info(self.recorded)["messages"]
+        file = self.folder / "cut short.mcap"
+        data = self.recorded.read_bytes()
+        for part in (0.9, 0.5):
+            with self.subTest(part):
+                file.write_bytes(data[:int(part * len(data))])
+                self.assertEqual(self.furrow("bag", "info", file).returncode, 1)
+                self.assertEqual(self.furrow("bag", "verify", file).returncode, 1)
+                mended = self.folder / f"mended {part}.mcap"
+                done = self.furrow("bag", "recover", file, mended)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assert_sound(mended)
+                messages = self.info(mended)["messages"]
+                self.assertGreater(messages, 0.5 * part * whole)
+                self.assertLess(messages, whole)
+
+    def test_a_cut_has_its_range_its_topics_and_what_still_holds(self):
+        file = self.folder / "part.mcap"
+        done = self.furrow("bag", "cut", self.recorded, file, "--from", 2, "--to", 4, "--topics",
+                           "wheel/*", "truth/field", "--compression", "lz4")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_sound(file)
+        row = self.info(file)
+        self.assertEqual(row["counts"], {"wheel/odometry": 200, "truth/field": 1})
+        self.assertEqual(row["compression"], "lz4")
+        self.assertAlmostEqual(row["duration_s"], 1.99, delta=0.011)
+
+    def test_bad_input_is_refused(self):
+        garbage = self.folder / "garbage.mcap"
+        garbage.write_bytes(os.urandom(4096))
+        kept = self.folder / "kept.mcap"
+        kept.write_text("mine")
+        missing = self.folder / "missing.mcap"
+        for arguments, part in (
+                (["info", missing], "missing.mcap"),
+                (["verify", missing], "missing.mcap"),
+                (["recover", missing, self.folder / "x"], "missing.mcap"),
+                (["info", garbage], "garbage.mcap"),
+                (["cut", garbage, self.folder / "x"], "garbage.mcap"),
+                (["recover", garbage, self.folder / "x"], "garbage.mcap"),
+                (["cut", self.recorded, kept], "kept.mcap"),
+                (["cut", self.recorded, self.folder / "x", "--from", "100"], "s long"),
+                (["cut", self.recorded, self.folder / "x", "--from", "3", "--to", "2"], "--to"),
+                (["cut", self.recorded, self.folder / "x", "--compression", "zip"], "zip"),
+                (["squash", self.recorded], "")):
+            with self.subTest(arguments):
+                self.assert_refused(["bag", *arguments], part)
+                self.assertFalse((self.folder / "x").exists())
+        self.assertEqual(kept.read_text(), "mine")
+        self.assertEqual(self.furrow("bag", "verify", garbage).returncode, 1)
+
+
+class FromRecordingTest(RecordingCase):
+    def test_the_ledger_is_that_of_the_run_itself(self):
+        common = [*SHORT_RUN[:4], "--recording", self.recorded]
+        for name, more in (("replayed", []), ("one thread", ["--threads", 1])):
+            self.run_graph(*common, *more, out=self.folder / name)
+            for file in ("ledger.csv", "map.svg"):
+                self.assertEqual((self.folder / name / file).read_bytes(),
+                                 (self.first_out / file).read_bytes(), file)
+
+    def test_images_go_through_detector_tracker_and_planner(self):
+        run = ["--seed", 3, "--length", 1, "--set", "camera.camera_rate_hz=2"]
+        summary = self.run_graph(*run, "--record", "images", "--set",
+                                 "recorder.exclude=[perception/*, tracker/*, planner/*, axis/*]")
+        counts = self.info(self.folder / "images_0.mcap")["counts"]
+        self.assertGreater(counts["camera/image"], 10)
+        self.assertNotIn("planner/plan", counts)
+        again = self.run_graph("--seed", 3, "--recording", "images_0.mcap",
+                               out=self.folder / "again")
+        self.assertEqual((self.folder / "again" / "ledger.csv").read_bytes(),
+                         (self.out / "ledger.csv").read_bytes())
+        self.assertGreater(again["treated_accurate"], 0)
+        self.assertEqual(again["weeds_total"], summary["weeds_total"])
+        # Without the renderer it is faster than the world.
+        self.assertGreater(again["realtime_factor"], 1.0)
+
+    def test_another_planner_gives_another_ledger(self):
+        self.run_graph(*SHORT_RUN[:4], "--recording", self.recorded, "--set",
+                       "tracker.confirm_matches=20")
+        self.assertNotEqual((self.out / "ledger.csv").read_bytes(),
+                            (self.first_out / "ledger.csv").read_bytes())
+
+    def test_only_sensors_give_a_run_from_a_part(self):
+        file = self.folder / "sensors.mcap"
+        done = self.furrow("bag", "cut", self.recorded, file, "--from", 2, "--exclude",
+                           "run/*", "truth/field", "truth/odometry", "truth/spray")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # What is not known is not in the ledger; the run itself goes to its end.
+        done = self.furrow("run", "--no-wire", "--clock", "lockstep", "--graph",
+                           "weeding_true_detections", "--recording", file, "--out", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_bad_input_is_refused(self):
+        graph = ["run", "--no-wire", "--clock", "lockstep", *SHORT_RUN[:4], "--out", self.out]
+        garbage = self.folder / "garbage.mcap"
+        garbage.write_bytes(b"\x89MCAP0\r\n" + os.urandom(1000))
+        for more, part in (
+                (["--recording", self.folder / "missing.mcap"], "missing.mcap"),
+                (["--recording", garbage], "--recording"),
+                (["--recording", self.recorded, "--set", "playback.start_s=1000"], "outside"),
+                (["--recording", self.recorded, "--set", "playback.exclude=[truth/instances]"],
+                 "truth/instances"),
+                (["--recording", self.recorded, "--set", "playback.remap=[nonsense]"], "nonsense"),
+                (["--record", self.folder / "x", "--set", "recorder.compression=zip"], "zip"),
+                (["--record", self.recorded.with_name("run")], "exists")):
+            with self.subTest(more):
+                self.assert_refused([*graph, *more], part)
+        # The default detector needs images, which this recording has not.
+        self.assert_refused(["run", "--no-wire", "--clock", "lockstep", "--recording",
+                             self.recorded, "--out", self.out], "camera/", "perception needs")
+
+
+class WireTest(RecordingCase):
+    def test_what_is_played_is_recorded(self):
+        recorder = self.start_recorder("--out", "again", "--schema", "omgidl", "--compression",
+                                       "lz4", "--min-free-mb", "0")
+        text = self.play(self.recorded, "--rate", 5, "--wait", 5, "--exclude", "diagnostics")
+        self.assertIn(" 0 lost", text)
+        time.sleep(0.3)
+        code, text = self.stop(recorder)
+        self.assertEqual(code, 0, text)
+        file = self.folder / "again_0.mcap"
+        self.assert_sound(file)
+        expected = self.info(self.recorded)["counts"]
+        expected.pop("diagnostics", None)
+        row = self.info(file)
+        self.assertEqual(row["counts"], expected)
+        self.assertEqual({topic["schema"] for topic in row["topics"]}, {"omgidl"})
+        # And it gives the same ledger as what it was played from, but for the times of arrival.
+        self.assertAlmostEqual(row["duration_s"], self.info(self.recorded)["duration_s"] / 5,
+                               delta=0.2)
+
+    def test_include_exclude_split_and_remap(self):
+        recorder = self.start_recorder("wheel/*", "moved/*", "imu/data", "--exclude", "imu/*",
+                                       "--split-s", "1", "--out", "some", "--min-free-mb", "0")
+        self.play(self.recorded, "--rate", 2, "--start", 1, "--duration", 5, "--wait", 5,
+                  "--remap", "axis/state=moved/state")
+        time.sleep(0.3)
+        code, text = self.stop(recorder)
+        self.assertEqual(code, 0, text)
+        files = sorted(self.folder.glob("some_*.mcap"))
+        self.assertEqual(len(files), 3)
+        rows = [self.info(file) for file in files]
+        for row in rows:
+            self.assertLess(row["duration_s"], 1.05)
+            self.assertEqual(set(row["counts"]), {"wheel/odometry", "moved/state"})
+        self.assertEqual(sum(row["counts"]["wheel/odometry"] for row in rows), 500)
+
+    def test_pause_and_resume_of_the_recorder(self):
+        recorder = self.start_recorder("wheel/odometry", "--out", "parts", "--min-free-mb", "0",
+                                       stdin=subprocess.PIPE)
+        self.play(self.recorded, "--rate", 10, "--duration", 2, "--wait", 5)
+        for verb in ("pause", "resume"):
+            recorder.stdin.write(verb + "\n")
+            recorder.stdin.flush()
+            self.play(self.recorded, "--rate", 10, "--duration", 2, "--wait", 5)
+        recorder.stdin.write("quit\n")
+        recorder.stdin.flush()
+        text = recorder.communicate(timeout=30)[0]
+        self.assertEqual(recorder.returncode, 0, text)
+        self.assertIn("199 let go while paused", text)
+        self.assertEqual(self.info(self.folder / "parts_0.mcap")["counts"],
+                         {"wheel/odometry": 398})
+
+    def test_a_pre_trigger_window_keeps_what_was_before(self):
+        recorder = self.start_recorder("wheel/odometry", "--out", "box", "--pre-trigger-s", "0.5",
+                                       "--min-free-mb", "0", stdin=subprocess.PIPE)
+        self.play(self.recorded, "--rate", 2, "--duration", 4, "--wait", 5)
+        self.assertEqual(list(self.folder.glob("box*")), [])
+        recorder.stdin.write("trigger\nquit\n")
+        recorder.stdin.flush()
+        text = recorder.communicate(timeout=30)[0]
+        self.assertEqual(recorder.returncode, 0, text)
+        row = self.info(self.folder / "box_0.mcap")
+        self.assertLessEqual(row["duration_s"], 0.5)
+        self.assertGreater(row["messages"], 50)
+        self.assertLessEqual(row["messages"], 101)
+
+    def test_the_player_obeys_the_keyboard(self):
+        recorder = self.start_recorder("wheel/odometry", "--out", "steps", "--min-free-mb", "0")
+        player = self.start("play", self.recorded, "--domain", domain(), "--pause", "--topics",
+                            "wheel/odometry", "--wait", "5", stdin=subprocess.PIPE)
+        for line, answer in (("step 5", "paused at"), ("seek 3", "paused at 3.0"),
+                             ("step 2", "paused at"), ("rate 0", "furrow: "),
+                             ("dance", "unknown 'dance'"), ("rate 20", "paused at"), ("resume", "playing")):
+            player.stdin.write(line + "\n")
+            player.stdin.flush()
+            self.assertIn(answer, player.stdout.readline())
+        text = player.communicate(timeout=30)[0]
+        self.assertEqual(player.returncode, 0, text)
+        time.sleep(0.3)
+        code, text = self.stop(recorder)
+        self.assertEqual(code, 0, text)
+        total = self.info(self.recorded)["counts"]["wheel/odometry"]
+        counted = self.info(self.folder / "steps_0.mcap")["counts"]["wheel/odometry"]
+        # Five from the beginning, then all from 3 s on.
+        self.assertAlmostEqual(counted, 5 + total - 299, delta=3)
+
+    def test_latched_topics_and_the_clock_reach_late_joiners(self):
+        player = self.start("play", self.recorded, "--domain", domain(), "--start", "3", "--loop",
+                            "--clock", "100", "--wait", "0")
+        for topic, part in (("truth/field", "plants:"), ("clock", "sec:")):
+            done = self.furrow("topic", "echo", topic, "--domain", domain(), "--count", 1,
+                               "--wait", 20)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(part, done.stdout)
+        code, text = self.stop(player)
+        self.assertEqual(code, 0, text)
+
+    def test_bad_input_is_refused(self):
+        garbage = self.folder / "garbage.mcap"
+        garbage.write_bytes(os.urandom(4096))
+        play = ["play", self.recorded, "--domain", domain()]
+        record = ["record", "--domain", domain(), "--out", self.folder / "x"]
+        for arguments, part in (
+                (["play", self.folder / "missing.mcap"], "missing.mcap"),
+                (["play", garbage], ""),
+                ([*play, "--rate", "0"], "--rate"),
+                ([*play, "--start", "500"], "outside"),
+                ([*play, "--remap", "nonsense"], "nonsense"),
+                ([*play, "--topics", "no/such"], "no topic"),
+                ([*play, "--domain", "900"], "--domain"),
+                ([*record, "--split-mb", "-1"], "--split-mb"),
+                ([*record, "--compression", "zip"], "zip"),
+                ([*record, "--wire", "lease=1"], "lease"),
+                ([*record, "--min-free-mb", "1000000"], "MB left"),
+                (["record", "--out", self.recorded.with_name("run")], "exists"),
+                (["record", "--out", "/proc/no/such"], "/proc/no")):
+            with self.subTest(arguments):
+                self.assert_refused(arguments, part)
+        self.assertEqual(list(self.folder.glob("x*")), [])
+
+
+class FaultTest(RecordingCase):
+    def test_a_killed_recorder_leaves_what_it_had_written(self):
+        recorder = self.start_recorder("--out", "killed", "--flush-s", "0.2", "--min-free-mb", "0")
+        player = self.start("play", self.recorded, "--domain", domain(), "--loop", "--rate", "2",
+                            "--wait", "5")
+        time.sleep(4.0)
+        recorder.send_signal(signal.SIGKILL)
+        recorder.communicate()
+        self.stop(player)
+        file = self.folder / "killed_0.mcap"
+        self.assertEqual(self.furrow("bag", "info", file).returncode, 1)
+        mended = self.folder / "mended.mcap"
+        done = self.furrow("bag", "recover", file, mended)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_sound(mended)
+        self.assertGreater(self.info(mended)["counts"]["wheel/odometry"], 200)
+
+    def small_disk(self, megabytes):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if os.geteuid() != 0 or shutil.which("mount") is None:
+            self.skipTest("needs root, to mount a small file system")
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={megabytes}m", "tmpfs",
+                                  disk], capture_output=True, text=True, check=False)
+        if mounted.returncode != 0:
+            self.skipTest("may not mount a file system: " + mounted.stderr)
+        self.addCleanup(subprocess.run, ["umount", disk], check=False)
+        return disk
+
+    def test_a_full_disk_stops_the_recording_in_good_order(self):
+        disk = self.small_disk(8)
+        for margin, left_mb in ((0, 0.0), (3, 1.5)):
+            with self.subTest(margin):
+                out = disk / "full"
+                recorder = self.start_recorder("--out", out, "--compression", "none",
+                                               "--min-free-mb", margin, "--chunk-kb", "256")
+                player = self.start("play", self.recorded, "--domain", domain(), "--loop",
+                                    "--rate", "20", "--wait", "5")
+                text = recorder.communicate(timeout=60)[0]
+                self.assertEqual(recorder.returncode, 1, text)
+                self.assertRegex(text, "MB left|[Nn]o space")
+                self.stop(player)
+                space = os.statvfs(disk)
+                self.assertGreaterEqual(space.f_bavail * space.f_bsize, left_mb * 1e6)
+                file = disk / "full_0.mcap"
+                mended = self.folder / f"mended {margin}.mcap"
+                if self.furrow("bag", "verify", file).returncode != 0:
+                    # There was no room even for the summary: all the chunks are there.
+                    self.assertEqual(margin, 0)
+                done = self.furrow("bag", "recover", file, mended)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertGreater(self.info(mended)["messages"], 1000)
+                file.unlink()
+
+    def test_a_run_goes_on_when_its_recorder_has_no_disk(self):
+        disk = self.small_disk(2)
+        self.run_graph(*SHORT_RUN, "--record", disk / "run", "--set",
+                       "recorder.min_free_mb=0", "--set", "recorder.compression=none")
+        self.assertEqual((self.out / "ledger.csv").read_bytes(),
+                         (self.first_out / "ledger.csv").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
