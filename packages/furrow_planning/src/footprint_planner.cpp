@@ -9,7 +9,8 @@
 namespace furrow::planning {
 namespace {
 
-constexpr int kFruitless = 3;  ///< rounds without gain that end the pursuit of what is left
+constexpr double kSaturated = 0.05;     ///< share left from which on the axes have no time to spare
+constexpr std::int64_t kFruitless = 3;  ///< rounds without gain that then end the pursuit
 
 }  // namespace
 
@@ -29,8 +30,12 @@ Status FootprintPlanner::plan(const PlanningProblem& problem, Plan& plan) {
   improve_routes(parameters_.improvement_rounds + 1);
   best_value_ = weigh_all();
   best_chains_ = chains_;
-  pursue_left();
-  search_again();
+  const bool saturated =
+      kSaturated * static_cast<double>(prepared_.nodes.size()) < static_cast<double>(count_left());
+  if (saturated) {
+    search_again();
+  }
+  pursue_left(saturated ? kFruitless : parameters_.improvement_rounds);
   chains_.swap(best_chains_);
   write_routes(problem, plan);
   return {};
@@ -124,19 +129,37 @@ std::int64_t FootprintPlanner::weigh_all() {
   return value;
 }
 
-bool FootprintPlanner::leaves_some() const {
+std::size_t FootprintPlanner::count_left() const {
+  std::size_t left = 0;
   for (std::uint32_t k = 0; k < covered_.size(); ++k) {
-    if (covered_[k] == 0 && candidates_.coverable(k)) {
-      return true;
-    }
+    left += covered_[k] == 0 && candidates_.coverable(k) ? 1U : 0U;
   }
-  return false;
+  return left;
 }
 
-void FootprintPlanner::pursue_left() {
-  int fruitless = 0;
+void FootprintPlanner::keep_if_better() {
+  const std::int64_t value = weigh_all();
+  if (value > best_value_) {
+    best_value_ = value;
+    best_chains_ = chains_;
+  }
+}
+
+void FootprintPlanner::search_again() {
+  for (auto& chain : chains_) {
+    chain.clear();
+  }
+  covered_.assign(covered_.size(), 0);
+  improve_routes(parameters_.improvement_rounds + 1);
+  keep_if_better();
+}
+
+void FootprintPlanner::pursue_left(std::int64_t patience) {
+  chains_ = best_chains_;
+  (void)weigh_all();
+  std::int64_t fruitless = 0;
   for (std::int64_t round = 0; round < parameters_.improvement_rounds; ++round) {
-    if (fruitless == kFruitless || !leaves_some()) {
+    if (fruitless == patience || count_left() == 0) {
       break;
     }
     for (std::uint32_t k = 0; k < covered_.size(); ++k) {
@@ -149,29 +172,6 @@ void FootprintPlanner::pursue_left() {
     keep_if_better();
     fruitless = best_value_ > before ? 0 : fruitless + 1;
   }
-  extra_.assign(extra_.size(), 0);
-}
-
-void FootprintPlanner::keep_if_better() {
-  const std::int64_t value = weigh_all();
-  if (value > best_value_) {
-    best_value_ = value;
-    best_chains_ = chains_;
-  }
-}
-
-void FootprintPlanner::search_again() {
-  chains_ = best_chains_;
-  (void)weigh_all();
-  if (!leaves_some()) {
-    return;
-  }
-  for (auto& chain : chains_) {
-    chain.clear();
-  }
-  covered_.assign(covered_.size(), 0);
-  improve_routes(parameters_.improvement_rounds + 1);
-  keep_if_better();
 }
 
 void FootprintPlanner::share_out() {

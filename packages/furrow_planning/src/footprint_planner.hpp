@@ -13,10 +13,11 @@ namespace furrow::planning {
 /// Plans sprays as discs that may be centred anywhere and treat several targets. Searches over the
 /// placements of SprayCandidates: from the exact joint routes of sprays on single stems, which also
 /// keep the travel low, by improving the axes one after the other, each best against what the
-/// others treat, until nothing is gained. While that leaves targets, their scores are raised and
-/// the axes improved again, so that the search leaves its local optimum towards them (as breakout
-/// local search: Morris 1993); then a second search starts from nothing. What is best by the true
-/// scores counts. Plan::weight_bound counts every target that some placement treats.
+/// others treat, until nothing is gained. Where that leaves many targets, a second search starts
+/// from nothing. Then the scores of those left are raised, round by round, and the axes improved
+/// again, so that the search leaves its local optimum towards them (breakout method: Morris 1993).
+/// What is best by the true scores counts. Plan::weight_bound counts every target that some
+/// placement treats.
 class FootprintPlanner final : public RoutePlanner {
  public:
   explicit FootprintPlanner(const PlannerParameters& parameters) : parameters_(parameters) {}
@@ -33,10 +34,11 @@ class FootprintPlanner final : public RoutePlanner {
   void start_from_stems();
   /// Until nothing is gained, at most so often; by the scores with what is extra.
   void improve_routes(std::int64_t rounds);
-  void pursue_left();
   void search_again();
-  /// Whether a target is left that some placement treats.
-  [[nodiscard]] bool leaves_some() const;
+  /// From the best chains; ends after so many rounds without gain.
+  void pursue_left(std::int64_t patience);
+  /// Targets that are left though some placement treats them.
+  [[nodiscard]] std::size_t count_left() const;
   void keep_if_better();
   /// What all chains are worth together by the true scores.
   std::int64_t weigh_all();
