@@ -86,6 +86,20 @@ function(furrow_executable target)
   install(TARGETS ${target} RUNTIME DESTINATION bin)
 endfunction()
 
+# A Google Benchmark program, which `furrow bench` runs; left out where the library is missing.
+function(furrow_benchmark target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  find_package(benchmark QUIET)
+  if(NOT benchmark_FOUND)
+    message(STATUS "Google Benchmark not found: no ${target}")
+    return()
+  endif()
+  add_executable(${target} ${ARG_SOURCES})
+  furrow_warnings(${target})
+  target_link_libraries(${target} PRIVATE ${ARG_LINK} benchmark::benchmark)
+  install(TARGETS ${target} RUNTIME DESTINATION lib/${PROJECT_NAME})
+endfunction()
+
 # A GoogleTest program. FURROW_TEST_DATA_DIR names the package's test folder.
 function(furrow_test target)
   if(NOT BUILD_TESTING)
