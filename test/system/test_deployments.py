@@ -173,6 +173,21 @@ class RealTimeTest(DeploymentCase):
         for pid in pids:
             self.assertFalse(pathlib.Path(f"/proc/{pid}").exists())
 
+    def test_ctrl_c_ends_a_run_of_one_process_within_two_seconds(self):
+        run = subprocess.Popen(
+            [furrow_program(), "run", *GRAPH, "--length", "20", "--out", self.out,
+             "--wire", f"domain_id={domain()}"],
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.kill)
+        self.assertIn("weeding", run.stderr.readline())
+        started = time.monotonic()
+        run.send_signal(signal.SIGINT)
+        text = run.communicate(timeout=20)[1]
+        self.assertLess(time.monotonic() - started, STOP_WITHIN_S)
+        self.assertEqual(run.returncode, 1, text)
+        self.assertIn("interrupted", text)
+
     def test_thirty_late_joiners_and_garbage_do_no_harm(self):
         # Long enough for a busy machine: everybody joins while it runs.
         up = self.up("--length", 24)

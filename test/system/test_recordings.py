@@ -87,7 +87,11 @@ class BagTest(RecordingCase):
         self.assertEqual(row["profile"], "ros2")
         self.assertEqual(row["damage"], "")
         self.assertEqual(row["messages"], sum(row["counts"].values()))
-        self.assertEqual(row["counts"]["truth/field"], 1)
+        # What a viewer needs: the robot once, and how it moves.
+        for topic in ("truth/field", "robot_description", "tf_static"):
+            self.assertEqual(row["counts"][topic], 1, topic)
+        for topic in ("tf", "joint_states"):
+            self.assertGreater(row["counts"][topic], 100, topic)
         # 4 m at 0.5 m/s, and the odometry at 100 Hz.
         self.assertAlmostEqual(row["duration_s"], 8.0, delta=1.0)
         self.assertAlmostEqual(row["counts"]["wheel/odometry"], 100 * row["duration_s"], delta=2)

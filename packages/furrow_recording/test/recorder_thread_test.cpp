@@ -106,6 +106,27 @@ TEST(RecorderThread, SerializesMessagesOfComponents) {
   EXPECT_EQ(reader->summary().schemas.at(1).data, "string data\n");
 }
 
+TEST(RecorderThread, WaitsForRoomWhereEveryMessageCounts) {
+  TestDisk disk;
+  const auto& type = msgs::message_type<std_msgs::msg::String>();
+  RecorderParameters parameters;
+  parameters.queue_messages = 1;
+  parameters.queue_mb = 1.0;
+  RecorderThread recorder(parameters, "run", disk.environment());
+  const auto topic = recorder.add_topic(
+      describe_topic("text", type.ros_name, {msgs::event_qos()}, SchemaStyle::kRos2msg));
+  // The second is larger than the whole queue.
+  for (int i = 0; i < 300; ++i) {
+    auto message = std::make_shared<std_msgs::msg::String>();
+    message->data(std::string(i == 1 ? 2'000'000 : 100, 'x'));
+    recorder.record_all(topic, at_ms(i), at_ms(i), message, type);
+  }
+  EXPECT_TRUE(recorder.stop().ok());
+  EXPECT_EQ(recorder.status().messages, 300U);
+  EXPECT_EQ(recorder.status().dropped, 0U);
+  EXPECT_EQ(content_of(disk.files.at("run_0.mcap")).size(), 300U);
+}
+
 TEST(RecorderThread, CommandsComeInOrderWithMessages) {
   TestDisk disk;
   RecorderParameters parameters;
