@@ -17,6 +17,7 @@ void add_eval_command(CLI::App& app, int& exit_code);
 void add_eval_tracking_command(CLI::App& app, int& exit_code);
 void add_eval_trial_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
+void add_bench_program_commands(CLI::App& app, int& exit_code);
 void add_up_command(CLI::App& app, int& exit_code);
 void add_topic_command(CLI::App& app, int& exit_code);
 void add_record_command(CLI::App& app, int& exit_code);

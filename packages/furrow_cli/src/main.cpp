@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   furrow::cli::add_eval_tracking_command(app, exit_code);
   furrow::cli::add_eval_trial_command(app, exit_code);
   furrow::cli::add_bench_command(app, exit_code);
+  furrow::cli::add_bench_program_commands(app, exit_code);
   furrow::cli::add_topic_command(app, exit_code);
   furrow::cli::add_record_command(app, exit_code);
   furrow::cli::add_play_command(app, exit_code);
