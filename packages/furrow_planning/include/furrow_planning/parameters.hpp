@@ -29,7 +29,7 @@ struct PlannerParameters {
   double segment_length_m = 1.0;
   std::int64_t notsp_targets = 6;
   std::int64_t permutation_targets = 9;
-  std::int64_t improvement_rounds = 6;
+  std::int64_t improvement_rounds = 8;
   std::int64_t threads = 1;
   std::int64_t max_targets = 20000;
 
