@@ -86,10 +86,10 @@ function(furrow_executable target)
   install(TARGETS ${target} RUNTIME DESTINATION bin)
 endfunction()
 
-# A Google Benchmark program, which `furrow bench` runs; left out where the library is missing.
+# A Google Benchmark program, which `furrow bench` runs; left out where find_package(benchmark) found
+# nothing.
 function(furrow_benchmark target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
-  find_package(benchmark QUIET)
   if(NOT benchmark_FOUND)
     message(STATUS "Google Benchmark not found: no ${target}")
     return()
