@@ -49,6 +49,7 @@ void bench(BenchRecordingOptions options) {
   json["rows"].push_back({{"measure", "playback"},
                           {"timing_error_p50_ms", playback.p50_ms},
                           {"timing_error_p99_ms", playback.p99_ms},
+                          {"handed_over_p99_ms", playback.handed_over_p99_ms},
                           {"messages", playback.messages},
                           {"lost", playback.lost}});
   json["parameters"] = {{"megabytes", options.benchmark.write.megabytes},
@@ -61,8 +62,9 @@ void bench(BenchRecordingOptions options) {
             << "; recorded p50 " << number(graph.recorded_p50_us, 1) << ", p99 "
             << number(graph.recorded_p99_us, 1) << "; " << graph.lost << " of " << graph.messages
             << " lost\nplayback at rate 1, timing error in ms: p50 " << number(playback.p50_ms, 3)
-            << ", p99 " << number(playback.p99_ms, 3) << "; " << playback.lost << " of "
-            << playback.messages << " lost\n";
+            << ", p99 " << number(playback.p99_ms, 3) << " as sent, "
+            << number(playback.handed_over_p99_ms, 3) << " as handed over; " << playback.lost
+            << " of " << playback.messages << " lost\n";
   if (options.json.empty()) return;
   if (const Status written = write_file_atomically(options.json, json.dump(2) + "\n"); !written) {
     throw std::runtime_error(written.error().message);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -109,7 +108,7 @@ std::uint64_t make_recording(const std::string& stem, double seconds) {
 }
 
 /// When messages were sent, as their reader sees it, against the times at which they stand in the
-/// file: from the first message on.
+/// file, as deviations from the median.
 class TimingErrors {
  public:
   void add(const dds::RawMessage& message) {
@@ -121,18 +120,19 @@ class TimingErrors {
     }
     const Time recorded = Time::from_nanoseconds(sec * 1'000'000'000 + nsec);
     const std::lock_guard lock(mutex_);
-    if (!offset_) offset_ = message.source_time - recorded;
-    errors_s_.push_back(std::abs((message.source_time - recorded - *offset_).to_seconds()));
+    offsets_s_.push_back((message.source_time - recorded).to_seconds());
   }
   [[nodiscard]] std::vector<double> errors_s() const {
     const std::lock_guard lock(mutex_);
-    return errors_s_;
+    const double median_s = quantile(offsets_s_, 0.5);
+    std::vector<double> errors;
+    for (const double offset_s : offsets_s_) errors.push_back(std::abs(offset_s - median_s));
+    return errors;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::optional<Duration> offset_;
-  std::vector<double> errors_s_;
+  std::vector<double> offsets_s_;
 };
 
 PlaybackTiming measure_playback(const RecordingBenchmark& benchmark) {
@@ -158,6 +158,7 @@ PlaybackTiming measure_playback(const RecordingBenchmark& benchmark) {
       throw std::runtime_error("the playback does not end");
     }
     (void)from.flush(Duration::milliseconds(3000));
+    timing.handed_over_p99_ms = played.status().lateness_p99_s * 1e3;
   }
   const std::vector<double> seconds = errors.errors_s();
   timing.lost = timing.messages - std::min<std::uint64_t>(timing.messages, seconds.size());

@@ -20,8 +20,9 @@ struct RecordingBenchmark {
 struct PlaybackTiming {
   std::uint64_t messages = 0;
   std::uint64_t lost = 0;
-  double p50_ms = 0.0;  ///< |time between messages at the reader - as recorded|, from the first
+  double p50_ms = 0.0;  ///< |sent - recorded - its median|, at the reader
   double p99_ms = 0.0;
+  double handed_over_p99_ms = 0.0;  ///< later than due, at the player
 };
 
 /// A graph that hands images over, alone and with a recorder component in it.

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@ constexpr std::chrono::milliseconds kReaderPollPeriod{5};
 /// Readers of one process come one after another, and find their writers a little later than
 /// these find them.
 constexpr std::chrono::milliseconds kSettle{500};
+/// Topics whose first message is larger are sent by a thread of the transport, so that they hold up
+/// no other; the rest on the player's own, which is then late rather than to lose one.
+constexpr std::size_t kQueuedBytes = 64 * 1024;
 constexpr int kVolatileDepth = 100;
 constexpr std::string_view kClockType = "rosgraph_msgs/msg/Clock";
 
@@ -76,6 +80,7 @@ class DdsPlayer::Impl {
       writers_.push_back(
           transport.make_raw_writer(topic.name, dds_type_name(topic.type_name), strongest(topic)));
     }
+    queued_.resize(writers_.size());
     if (player_.options().clock_hz > 0.0) {
       clock_ = transport.make_raw_writer("clock", dds_type_name(kClockType), msgs::sensor_qos(10));
     }
@@ -118,6 +123,9 @@ class DdsPlayer::Impl {
     DdsPlayerStatus status;
     status.messages = messages_;
     status.dropped = dropped_;
+    for (const auto& writer : writers_) {
+      status.dropped += writer->counters().dropped;
+    }
     status.faults = faults_;
     status.last_fault = last_fault_;
     status.position = player_.position(steady_time());
@@ -194,12 +202,17 @@ class DdsPlayer::Impl {
   }
 
   void play(const PlayedMessage& message, Time now) {
-    // On this thread, past the queue: a player that is held up for a while is late and loses
-    // nothing.
     dds::RawWriter& writer = *writers_[message.topic];
-    const bool wanted = player_.topics()[message.topic].latched() || writer.has_readers();
-    if (wanted && !writer.write_now(*message.payload)) {
-      ++dropped_;
+    if (!queued_[message.topic]) {
+      queued_[message.topic] = message.payload->size() > kQueuedBytes;
+    }
+    if (*queued_[message.topic]) {
+      writer.write(message.payload);
+    } else {
+      const bool wanted = player_.topics()[message.topic].latched() || writer.has_readers();
+      if (wanted && !writer.write_now(*message.payload)) {
+        ++dropped_;
+      }
     }
     ++messages_;
     if (message.latched_again || player_.paused()) {
@@ -221,6 +234,7 @@ class DdsPlayer::Impl {
 
   DdsPlayerOptions options_;
   std::vector<std::unique_ptr<dds::RawWriter>> writers_;  // by the player's topics
+  std::vector<std::optional<bool>> queued_;               // by topic, when known
   std::unique_ptr<dds::RawWriter> clock_;
 
   mutable std::mutex mutex_;

@@ -26,6 +26,7 @@ struct File {
   std::map<mcap::ChannelId, std::size_t> topics;  ///< kNotPlayed where filtered out
   std::optional<mcap::MessageCursor> cursor;
   std::optional<mcap::Message> head;  ///< its data live until the cursor moves
+  Payload payload;                    ///< of the head, copied before it is due
   bool ended = false;
 };
 
@@ -44,9 +45,12 @@ Status check_rate(double rate) {
   return {};
 }
 
-PlayedMessage played(std::size_t topic, const mcap::Message& message) {
-  return {topic, message.log_time, message.publish_time, false,
-          std::make_shared<const std::vector<std::byte>>(message.data.begin(), message.data.end())};
+Payload copy_of(const mcap::Message& message) {
+  return std::make_shared<const std::vector<std::byte>>(message.data.begin(), message.data.end());
+}
+
+PlayedMessage played(std::size_t topic, const mcap::Message& message, Payload payload) {
+  return {topic, message.log_time, message.publish_time, false, std::move(payload)};
 }
 
 }  // namespace
@@ -284,7 +288,7 @@ class Player::Impl {
         }
         const std::size_t topic = file->topics.at((*next)->channel_id);
         auto& kept = last[topic];
-        kept.push_back(played(topic, **next));
+        kept.push_back(played(topic, **next, copy_of(**next)));
         if (kept.size() > latched_depth(topics_[topic])) {
           kept.pop_front();
         }
@@ -318,6 +322,9 @@ class Player::Impl {
         }
         file->head = *next;
         file->ended = !file->head.has_value();
+        if (file->head) {
+          file->payload = copy_of(*file->head);
+        }
       }
       if (file->head && (first == nullptr || file->head->log_time < first->head->log_time)) {
         first = file.get();
@@ -327,7 +334,8 @@ class Player::Impl {
   }
 
   PlayedMessage pop(File& file) {
-    PlayedMessage message = played(file.topics.at(file.head->channel_id), *file.head);
+    PlayedMessage message =
+        played(file.topics.at(file.head->channel_id), *file.head, std::move(file.payload));
     file.head.reset();
     played_any_ = true;
     return message;
