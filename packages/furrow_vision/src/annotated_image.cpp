@@ -2,7 +2,20 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "furrow_core/file.hpp"
+
 namespace furrow::vision {
+namespace {
+
+/// The decoder fills what a truncated JPEG lacks with grey. Its end mark is missing then; one in
+/// the first half is that of a preview.
+bool is_truncated_jpeg(const std::filesystem::path& path) {
+  const auto bytes = read_file(path);
+  if (!bytes.ok() || !bytes->starts_with("\xFF\xD8")) return false;
+  return bytes->find("\xFF\xD9", bytes->size() / 2) == std::string::npos;
+}
+
+}  // namespace
 
 Status load_pixels(AnnotatedImage& image) {
   const std::string file = image.path.string();
@@ -16,7 +29,9 @@ Status load_pixels(AnnotatedImage& image) {
   } catch (const cv::Exception&) {
     bgr.release();
   }
-  if (bgr.empty()) return Error{ErrorCode::kParse, file + ": not an image, or a truncated one"};
+  if (bgr.empty() || is_truncated_jpeg(image.path)) {
+    return Error{ErrorCode::kParse, file + ": not an image, or a truncated one"};
+  }
   if (image.width_px > 0 && bgr.size() != cv::Size(image.width_px, image.height_px)) {
     return Error{ErrorCode::kParse, file + ": is " + std::to_string(bgr.cols) + "x" +
                                         std::to_string(bgr.rows) + ", annotated as " +

@@ -59,6 +59,18 @@ Status write_png(const std::filesystem::path& path, const cv::Mat& image) {
   return {};
 }
 
+/// COCO has no mask of vegetation: what no instance covers becomes a crowd region.
+void add_vegetation_without_class(const SubClass& sub_class, AnnotatedImage& image) {
+  if (image.vegetation.empty()) return;
+  cv::Mat without = image.vegetation > 0;
+  without.setTo(0, semantic_labels(image) > 0);
+  AnnotatedInstance crowd;
+  crowd.kind = sub_class.kind;
+  crowd.category = sub_class.name;
+  crowd.crowd = true;
+  if (cut_to_box(without, crowd)) image.instances.push_back(std::move(crowd));
+}
+
 }  // namespace
 
 void ConversionParameters::visit(ParameterVisitor& v) {
@@ -156,10 +168,14 @@ Status convert_dataset(const Dataset& dataset, const ConversionParameters& param
   }
   DatasetSplit split = split_dataset(dataset, parameters, seed);
   std::size_t done = 0;
-  const auto write_part = [&](Dataset& part, const char* name, double scale) -> Status {
+  const auto write_part = [&](Dataset& part, const char* name, double scale,
+                              bool evaluation) -> Status {
     for (AnnotatedImage& image : part.images) {
       if (const Status loaded = load_pixels(image); !loaded.ok()) return loaded;
       scale_image(image, scale);
+      if (evaluation && !part.classes.empty()) {
+        add_vegetation_without_class(part.classes.back(), image);
+      }
       // Images of several folders may share a name.
       image.path = folder / "images" /
                    (std::string(name) + "_" + std::to_string(done) + "_" +
@@ -171,11 +187,12 @@ Status convert_dataset(const Dataset& dataset, const ConversionParameters& param
     }
     return write_coco(folder / (std::string(name) + ".json"), part);
   };
-  if (const Status s = write_part(split.train, "train", parameters.scale); !s.ok()) return s;
-  if (const Status s = write_part(split.validation, "validation", parameters.scale); !s.ok()) {
+  if (const Status s = write_part(split.train, "train", parameters.scale, false); !s.ok()) return s;
+  if (const Status s = write_part(split.validation, "validation", parameters.scale, false);
+      !s.ok()) {
     return s;
   }
-  return write_part(split.evaluation, "evaluation", 1.0);
+  return write_part(split.evaluation, "evaluation", 1.0, true);
 }
 
 }  // namespace furrow::vision

@@ -106,6 +106,17 @@ double crop_probability(const std::vector<double>& class_scores,
   return sum;
 }
 
+void shift_towards_crops(double log_odds, const std::vector<SubClass>& classes,
+                         std::vector<double>& class_scores) {
+  if (log_odds == 0.0) return;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (classes[i].kind == SubClassKind::kCrop) class_scores[i] *= std::exp(log_odds);
+    sum += class_scores[i];
+  }
+  for (double& score : class_scores) score /= sum;
+}
+
 void measure_instance(const RgbdView& view, Instance& instance) {
   const cv::Rect& box = instance.box_px;
   std::vector<float> depths;

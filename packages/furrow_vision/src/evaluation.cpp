@@ -1,15 +1,33 @@
 #include "furrow_vision/evaluation.hpp"
 
 namespace furrow::vision {
+namespace {
+
+/// Crowd regions, and vegetation that no instance covers.
+cv::Mat vegetation_without_class(const AnnotatedImage& truth) {
+  AnnotatedImage crowds = truth, plants = truth;
+  std::erase_if(crowds.instances, [](const auto& instance) { return !instance.crowd; });
+  std::erase_if(plants.instances, [](const auto& instance) { return instance.crowd; });
+  cv::Mat without = semantic_labels(crowds) > 0;
+  if (!truth.vegetation.empty()) without |= truth.vegetation > 0;
+  without.setTo(0, semantic_labels(plants) > 0);
+  return without;
+}
+
+}  // namespace
 
 double VisionEvaluation::add(const AnnotatedImage& truth, const std::vector<Instance>& detections,
                              const geometry::PinholeCamera& camera) {
   constexpr double kMatchIou = 0.5;
-  const cv::Mat labels = semantic_labels(truth);
-  const cv::Mat found = semantic_labels(detections, labels.size());
+  const cv::Mat all = semantic_labels(truth);
+  cv::Mat found = semantic_labels(detections, all.size());
   ++images_;
+  vegetation_.add_vegetation(truth.vegetation.empty() ? all : truth.vegetation, found);
+  cv::Mat labels = all.clone();
+  const cv::Mat without_class = vegetation_without_class(truth);
+  labels.setTo(0, without_class);
+  found.setTo(0, without_class);
   semantic_.add(labels, found);
-  vegetation_.add_vegetation(truth.vegetation.empty() ? labels : truth.vegetation, found);
   ap_mask_.add(truth.instances, detections);
   ap_box_.add(truth.instances, detections);
   pq_.add(truth.instances, detections);

@@ -283,6 +283,7 @@ class MaskRcnnDetector::Implementation {
       const cv::Rect inner = cv::boundingRect(own);
       if (inner.empty()) continue;
       Instance plant{.score = regions[i].score, .class_scores = regions[i].class_scores};
+      shift_towards_crops(parameters_.crop_log_odds, model_.classes, plant.class_scores);
       plant.crop_probability = crop_probability(plant.class_scores, model_.classes);
       plant.box_px = inner + extents[i].tl();
       plant.mask = own(inner).clone();
@@ -337,6 +338,12 @@ void MaskRcnnParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1e5},
           min_plant_area_mm2);
+  v.visit({.name = "crop_log_odds",
+           .description = "Added to the log-odds of a crop, where crops are more frequent than in "
+                          "training, or dearer",
+           .min = -10.0,
+           .max = 10.0},
+          crop_log_odds);
   v.visit({.name = "input_area_max_px",
            .unit = "px",
            .description = "Larger inputs of the network are scaled down",

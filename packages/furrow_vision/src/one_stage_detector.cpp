@@ -94,6 +94,7 @@ class OneStageDetector::Implementation {
     plant.score = decoded.plant_probability *
                   (kWithoutStem + (1.0 - kWithoutStem) * decoded.stem_probability);
     plant.class_scores = decoded.class_scores;
+    shift_towards_crops(parameters_.crop_log_odds, model_.classes, plant.class_scores);
     plant.crop_probability = crop_probability(plant.class_scores, model_.classes);
   }
 
@@ -111,6 +112,12 @@ void OneStageParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1.0},
           cell_cover_min);
+  v.visit({.name = "crop_log_odds",
+           .description = "Added to the log-odds of a crop, where crops are more frequent than in "
+                          "training, or dearer",
+           .min = -10.0,
+           .max = 10.0},
+          crop_log_odds);
   v.visit({.name = "input_area_max_px",
            .unit = "px",
            .description = "Larger inputs of the network are scaled down",

@@ -91,7 +91,11 @@ cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation
       out[u] = sum > bias ? 255 : 0;
     }
   }
-  if (index_too && parameters.index.median_px > 1) {
+  // Where pixels are not much finer than the network's cells, a median would take thin leaves away,
+  // and the network keeps specks out.
+  constexpr int kCoarseCell_px = 8;
+  const bool fine = vegetation.index.cols > kCoarseCell_px * plant_logit.cols;
+  if (index_too && fine && parameters.index.median_px > 1) {
     cv::medianBlur(mask, mask, static_cast<int>(parameters.index.median_px) | 1);
   }
   return mask;

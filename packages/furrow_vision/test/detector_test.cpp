@@ -76,6 +76,17 @@ TEST(CheckView, BoundsTheSize) {
   EXPECT_NE(status.error().message.find("larger than allowed"), std::string::npos);
 }
 
+TEST(ShiftTowardsCrops, ChangesTheOddsByTheFactor) {
+  const std::vector<SubClass> classes = {{"beet", SubClassKind::kCrop},
+                                         {"goosefoot", SubClassKind::kWeed},
+                                         {"grass", SubClassKind::kWeed}};
+  std::vector<double> scores = {0.2, 0.6, 0.2};
+  shift_towards_crops(std::log(4.0), classes, scores);  // odds 1 : 4 become 1 : 1
+  EXPECT_NEAR(scores[0], 0.5, 1e-12);
+  EXPECT_NEAR(scores[1], 0.375, 1e-12);
+  EXPECT_NEAR(scores[2], 0.125, 1e-12);
+}
+
 class MeasureInstance : public testing::Test {
  protected:
   MeasureInstance() {

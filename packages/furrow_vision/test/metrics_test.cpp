@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "furrow_vision/evaluation.hpp"
+
 namespace furrow::vision {
 namespace {
 
@@ -134,6 +136,36 @@ TEST(Quantile, IsLinearBetweenValues) {
   EXPECT_DOUBLE_EQ(quantile({3.0, 1.0, 2.0, 4.0}, 0.5), 2.5);
   EXPECT_DOUBLE_EQ(quantile({7.0}, 0.95), 7.0);
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+TEST(VisionEvaluation, LeavesVegetationWithoutAClassOutOfTheClasses) {
+  const auto square = [](int u) {
+    AnnotatedInstance plant;
+    plant.box_px = {u, 10, 10, 10};
+    plant.mask = cv::Mat(10, 10, CV_8U, cv::Scalar(255));
+    return plant;
+  };
+  AnnotatedImage truth;
+  truth.width_px = 80;
+  truth.height_px = 40;
+  truth.instances = {square(10), square(30)};
+  truth.instances[1].crowd = true;
+  truth.vegetation = cv::Mat::zeros(40, 80, CV_8U);
+  for (const int u : {10, 30, 50}) truth.vegetation(cv::Rect(u, 10, 10, 10)) = 1;
+  std::vector<Instance> found;
+  for (const int u : {10, 30, 50}) {
+    found.push_back(
+        {.score = 1.0, .box_px = {u, 10, 10, 10}, .mask = cv::Mat(10, 10, CV_8U, cv::Scalar(255))});
+  }
+  const geometry::PinholeCamera camera({80, 40, 100.0, 100.0, 39.5, 19.5});
+  VisionEvaluation evaluation;
+  EXPECT_DOUBLE_EQ(evaluation.add(truth, found, camera), 1.0);
+  EXPECT_DOUBLE_EQ(evaluation.scores().iou_weed, 1.0);
+  EXPECT_DOUBLE_EQ(evaluation.scores().iou_vegetation, 1.0);
+  found.pop_back();
+  evaluation.add(truth, found, camera);
+  EXPECT_DOUBLE_EQ(evaluation.scores().iou_weed, 1.0);
+  EXPECT_DOUBLE_EQ(evaluation.scores().iou_vegetation, 500.0 / 600.0);
 }
 
 }  // namespace

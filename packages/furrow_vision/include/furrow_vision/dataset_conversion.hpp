@@ -34,7 +34,8 @@ struct DatasetSplit {
 void scale_image(AnnotatedImage& image, double scale);
 
 /// Writes images/ and train.json, validation.json, evaluation.json (COCO) into `folder`. Training
-/// and validation images are scaled; those of the evaluation stay as they are. `progress` is called
+/// and validation images are scaled; those of the evaluation stay as they are, and what vegetation
+/// no instance covers becomes a crowd region there, of the last class. `progress` is called
 /// with the number of images done. Fails with what reading and writing fail with, and with
 /// kOutOfRange for parameters outside their range.
 [[nodiscard]] Status convert_dataset(const Dataset& dataset, const ConversionParameters& parameters,

@@ -77,6 +77,10 @@ constexpr int kMaxImageArea_px = 64 * 1024 * 1024;
 [[nodiscard]] double crop_probability(const std::vector<double>& class_scores,
                                       const std::vector<SubClass>& classes);
 
+/// Adds to the log-odds of the crop classes together; the scores still sum to 1.
+void shift_towards_crops(double log_odds, const std::vector<SubClass>& classes,
+                         std::vector<double>& class_scores);
+
 /// Sets stem_depth_m, depth_measured, area_mm2, radius_m and touches_border from box, mask and
 /// stem. Holes in the depth take the median depth of the mask's pixels that have one; when fewer
 /// than a tenth have one, ground_distance_m.

@@ -28,7 +28,9 @@ struct VisionScores {
 class VisionEvaluation {
  public:
   /// Returns the image's own quality, to choose pictures by: the mean IoU of its three classes.
-  /// Areas count where the truth names them and the plant is not cut off by the image's border.
+  /// Vegetation that the truth gives no class (crowd regions, and what no instance covers) counts
+  /// as vegetation and for neither class. Areas count where the truth names them and the plant is
+  /// not cut off by the image's border.
   /// @pre the detections are of this image.
   double add(const AnnotatedImage& truth, const std::vector<Instance>& detections,
              const geometry::PinholeCamera& camera);

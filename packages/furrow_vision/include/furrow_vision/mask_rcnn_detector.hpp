@@ -16,11 +16,12 @@ namespace furrow::vision {
 struct MaskRcnnParameters {
   VegetationFusionParameters vegetation;
   double score_min = 0.3;
-  double iou_max = 0.5;
+  double iou_max = 0.4;
   double proposal_iou_max = 0.7;
   std::int64_t proposals_max = 200;
   std::int64_t plants_max = 200;
   double min_plant_area_mm2 = 20.0;
+  double crop_log_odds = 1.0;  ///< rare weeds weighed more in training
   std::int64_t input_area_max_px = 2'000'000;
   std::vector<std::string> classes;
   void visit(ParameterVisitor& v);

@@ -18,6 +18,7 @@ struct OneStageParameters {
   VegetationFusionParameters vegetation;
   OneStageDecodingParameters decoding;
   double cell_cover_min = 0.1;
+  double crop_log_odds = 1.0;  ///< rare weeds weighed more in training
   std::int64_t input_area_max_px = 2'000'000;
   std::vector<std::string> classes;
   void visit(ParameterVisitor& v);

@@ -14,8 +14,8 @@ struct VegetationFusionParameters {
   double plant_threshold = 0.5;
   double network_weight = 1.0;
   double network_logit_max = 4.0;
-  double agreement_exponent = 30.0;
-  double index_scale = 3.0;
+  double agreement_exponent = 40.0;
+  double index_scale = 4.0;
   VegetationParameters index;
   void visit(ParameterVisitor& v);
 };
