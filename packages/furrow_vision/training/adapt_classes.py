@@ -25,7 +25,7 @@ def adapt(model, old, new):
     first = HEADS[weight]
     names = [name for name, _ in old]
     for key in (weight, weight.replace("weight", "bias")):
-        rows = model[key]
+        rows = model[key].float()
         made = []
         for name, kind in new:
             alike = [i for i, (_, other) in enumerate(old) if other == kind]
