@@ -160,9 +160,9 @@ def main():
     model = one_stage.OneStage(len(train.classes), arguments.width).to(device)
     if checkpoint:
         model.load_state_dict(checkpoint["model"])
-    # The mean over the last few hundred steps is what is kept: it is steadier than any one of them.
+    # The mean over the last two hundred steps is what is kept: it is steadier than any one of them.
     average = torch.optim.swa_utils.AveragedModel(
-        model, avg_fn=lambda mean, new, _: 0.998 * mean + 0.002 * new, use_buffers=True)
+        model, avg_fn=lambda mean, new, _: 0.995 * mean + 0.005 * new, use_buffers=True)
     weights = class_weights(train).to(device)
     arguments.out.mkdir(parents=True, exist_ok=True)
 
