@@ -1,5 +1,6 @@
 #include "thread_scheduling.hpp"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -37,6 +38,10 @@ std::string use_fifo_scheduling(int priority) {
 
 std::string lock_memory() {
   if (!may_lock_without_limit()) return "the limit of locked memory is too low";
+  // What an image's buffers give back stays with the process: to map and clear their pages again
+  // for each image stops every thread for milliseconds.
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
   return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? "" : std::strerror(errno);
 }
 
