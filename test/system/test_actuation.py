@@ -105,8 +105,8 @@ class ControlLoopTest(FurrowCase):
         return {row[0]: dict(zip(rows[0], row)) for row in rows[1:]}
 
     def run_beside_the_graph(self):
-        """Missed periods over all, the worst p99 of the jitter in ms, and how many processors
-        others used meanwhile."""
+        """Missed periods over all, the worst p99 of the jitter in ms, how many processors others
+        used meanwhile, and how the drivers' threads run."""
         busy_s, own_s = self.cpu_seconds()
         started = time.monotonic()
         done = self.furrow("run", "--no-wire", "--clock", "real", "--length", 4, "--out", self.out)
@@ -124,12 +124,14 @@ class ControlLoopTest(FurrowCase):
                                             r"; memory (locked|not locked.*)$")
         print(f"control loop: {missed} of {missed + timers} periods missed, jitter p99 "
               f"{p99_ms:.2f} ms; {drivers[0]['thread']}; others used {others:.1f} processors")
-        return missed / (missed + timers), p99_ms, others
+        return missed / (missed + timers), p99_ms, others, drivers[0]["thread"]
 
     def test_it_keeps_500_hz_beside_the_composed_graph(self):
         failures = []
         for _ in range(3):
-            missed, p99_ms, others = self.run_beside_the_graph()
+            missed, p99_ms, others, thread = self.run_beside_the_graph()
+            if "refused" in thread:
+                self.skipTest(f"real-time threads are not permitted here: {thread}")
             if missed < 0.001 and p99_ms < 1.0:
                 return
             if others < 0.3:
