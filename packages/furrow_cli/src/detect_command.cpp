@@ -21,7 +21,7 @@ struct DetectOptions {
   VisionOptions vision;
   std::vector<std::string> images;
   std::string out = "detections";
-  double min_score = 0.3;
+  double min_score = 0.1;
 };
 
 /// Names of images in several folders may agree; outputs may not.
