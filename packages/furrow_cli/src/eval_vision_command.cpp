@@ -10,6 +10,7 @@
 #include "console.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_vision/overlay.hpp"
+#include "scratch_folder.hpp"
 #include "verb.hpp"
 #include "vision_datasets.hpp"
 #include "vision_options.hpp"

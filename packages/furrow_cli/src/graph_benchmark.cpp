@@ -19,6 +19,7 @@
 #include "furrow_msgs/furrow_msgs.h"
 #include "furrow_recording/mcap_reader.hpp"
 #include "latency_graph.hpp"
+#include "scratch_folder.hpp"
 #include "signals.hpp"
 
 namespace furrow::cli {
@@ -28,26 +29,6 @@ using std::chrono::milliseconds;
 constexpr char kRawTopic[] = "bench/raw";
 /// A reader finds its writer a little later than the writer finds it; what is sent between is lost.
 constexpr milliseconds kSettle{1500};
-
-/// A folder of this process alone, removed at the end.
-class ScratchFolder {
- public:
-  ScratchFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("furrow_bench_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 LatencyLoad load_of(std::size_t bytes, double scale) {
   LatencyLoad load;
@@ -149,9 +130,9 @@ void measure_observed(const GraphBenchmark& benchmark, const ScratchFolder& scra
   for (const std::size_t bytes : benchmark.bytes) {
     const LatencyLoad load = load_of(bytes, benchmark.scale);
     dds::DdsTransport transport(wire_of(benchmark, "bench_graph"));
-    ChildProcess recorder =
-        start_tool(benchmark, {"record", "camera/image", "--compression=lz4", "--min-free-mb=0",
-                               "--out=" + scratch.file("observed_" + std::to_string(bytes))});
+    ChildProcess recorder = start_tool(
+        benchmark, {"record", "camera/image", "--compression=lz4", "--min-free-mb=0",
+                    "--out=" + (scratch.path() / ("observed_" + std::to_string(bytes))).string()});
     Latencies latencies;
     run_latency_graph({.load = load, .transport = &transport}, latencies,
                       [&transport](graph::Runtime&) {
@@ -199,7 +180,7 @@ void measure_fastdds_in_process(const GraphBenchmark& benchmark, GraphBenchmarkR
 void measure_two_processes(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
                            GraphBenchmarkResult& result) {
   const msgs::Topic& topic = msgs::topics::CameraImage::topic();
-  const std::string file = scratch.file("peer.json");
+  const std::string file = (scratch.path() / "peer.json").string();
   std::vector<LatencyLoad> loads;
   {
     ChildProcess peer = start_tool(benchmark, {"bench", "graph-peer", "--json=" + file});
@@ -269,14 +250,14 @@ GraphBenchmarkRow read_plans(const std::string& path, const std::string& file) {
 void measure_end_to_end(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
                         GraphBenchmarkResult& result) {
   for (const std::string name : {"composed", "distributed"}) {
-    const std::string stem = scratch.file(name);
+    const std::string stem = (scratch.path() / name).string();
     std::vector<std::string> command = {own_program(),
                                         name == "composed" ? "run" : "up",
                                         "--deploy=" + name,
                                         "--clock=real",
                                         "--length=" + std::to_string(benchmark.length_m),
                                         "--seed=" + std::to_string(benchmark.seed),
-                                        "--out=" + scratch.file(name + "_report"),
+                                        "--out=" + (scratch.path() / (name + "_report")).string(),
                                         "--record=" + stem,
                                         "--set=recorder.include=[planner/plan]",
                                         "--set=recorder.min_free_mb=0"};

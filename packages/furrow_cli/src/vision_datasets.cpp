@@ -1,7 +1,5 @@
 #include "vision_datasets.hpp"
 
-#include <unistd.h>
-
 #include <stdexcept>
 
 #include "console.hpp"
@@ -29,18 +27,6 @@ vision::Dataset value_or_throw(Result<vision::Dataset> dataset) {
 }
 
 }  // namespace
-
-ScratchFolder::ScratchFolder() {
-  std::string name = (fs::temp_directory_path() / "furrow_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw std::runtime_error(name + ": cannot make the folder");
-  path_ = name;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
 
 EvaluationSet render_evaluation_set(const fs::path& folder, std::int64_t images, cv::Size size,
                                     std::uint64_t seed, const fs::path& species_file) {

@@ -15,19 +15,6 @@ struct EvaluationSet {
   vision::Dataset dataset;
 };
 
-/// A folder that goes with the object.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// `images` pictures of this size with depth, drawn from `seed` with the plants of a species file
 /// (empty: params/species_evaluation.yaml) in a mix of their own, written into `folder`. Throws.
 [[nodiscard]] EvaluationSet render_evaluation_set(const std::filesystem::path& folder,
