@@ -9,6 +9,7 @@
 
 #include "cdr_type.hpp"
 #include "participant_qos.hpp"
+#include "shared_memory.hpp"
 
 namespace furrow::dds {
 
@@ -32,6 +33,7 @@ void log_to_stderr() {
 Participant::Participant(const DdsParameters& parameters) : parameters_(parameters) {
   const fdds::DomainParticipantQos qos = participant_qos(parameters);
   log_to_stderr();
+  remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
   participant_ = fdds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &discovery_,
       fdds::StatusMask::none());

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "endpoint_qos.hpp"
+#include "shared_memory.hpp"
 
 namespace furrow::dds {
 
@@ -31,6 +32,19 @@ bool has(const std::vector<std::string>& list, const char* entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
 }
 
+/// For data, and alone for discovery: what is said of participants and endpoints must arrive even
+/// where a process died with its shared memory open. Ports left at 0 become those of the standard.
+void listen_on_udp(fdds::WireProtocolConfigQos& wire) {
+  rtps::Locator_t any;
+  any.kind = LOCATOR_KIND_UDPv4;
+  any.port = 0;
+  wire.default_unicast_locator_list.push_back(any);
+  wire.builtin.metatrafficUnicastLocatorList.push_back(any);
+  rtps::Locator_t group = any;
+  rtps::IPLocator::setIPv4(group, 239, 255, 0, 1);
+  wire.builtin.metatrafficMulticastLocatorList.push_back(group);
+}
+
 void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
   for (const std::string& name : parameters.transports) {
@@ -43,6 +57,9 @@ void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos&
     shm->segment_size(static_cast<std::uint32_t>(parameters.shm_segment_mb * 1'000'000));
     shm->port_queue_capacity(kShmPortQueue);
     qos.transport().user_transports.push_back(shm);
+    for (const rtps::Locator_t& locator : own_shm_locators(*shm)) {
+      qos.wire_protocol().default_unicast_locator_list.push_back(locator);
+    }
   }
   if (has(parameters.transports, "udp")) {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
@@ -57,6 +74,7 @@ void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos&
       udp->interfaceWhiteList.push_back(address);
     }
     qos.transport().user_transports.push_back(udp);
+    listen_on_udp(qos.wire_protocol());
   }
   if (qos.transport().user_transports.empty()) {
     throw ConfigError("transports: empty");
