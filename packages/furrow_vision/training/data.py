@@ -8,6 +8,8 @@ import numpy as np
 
 STRIDE = 4
 OFFSET_UNIT_PX = 32.0
+# Ids of pixels that belong to no plant: soil, and vegetation that the data set gives no plant.
+SOIL, UNKNOWN = -1, -2
 
 
 def decode_rle(segmentation):
@@ -58,18 +60,23 @@ def mask_of(annotation, height, width):
 
 
 class CocoSet:
-    """Images with instance ids, classes and stems. `classes` are names, crop species first. Keeps
-    what it has decoded, up to `memory_bytes`."""
+    """Images with instance ids, classes and stems, of one COCO file or several. `classes` are names,
+    crop species first. Frames that are not labelled are left out. Keeps what it has decoded, up to
+    `memory_bytes`."""
 
-    def __init__(self, file, classes=None, memory_bytes=4 << 30):
+    def __init__(self, files, classes=None, memory_bytes=4 << 30):
         self.memory_left, self.decoded = memory_bytes, {}
-        file = pathlib.Path(file)
+        self.classes, self.items = classes, []
+        for file in files if isinstance(files, list) else [files]:
+            self._read(pathlib.Path(file))
+
+    def _read(self, file):
         content = json.loads(file.read_text())
         categories = {c["id"]: c for c in content["categories"]}
         ordered = sorted(categories.values(),
                          key=lambda c: (c.get("supercategory") != "crop", c["id"]))
-        self.classes = classes or [(c["name"], "crop" if c.get("supercategory") == "crop" else "weed")
-                                   for c in ordered]
+        self.classes = self.classes or [
+            (c["name"], "crop" if c.get("supercategory") == "crop" else "weed") for c in ordered]
         index = {name: i for i, (name, _) in enumerate(self.classes)}
         by_image = {}
         for annotation in content["annotations"]:
@@ -77,14 +84,14 @@ class CocoSet:
             if name not in index:
                 raise SystemExit(f"{file}: category '{name}' is not one of the model's classes")
             by_image.setdefault(annotation["image_id"], []).append((index[name], annotation))
-        self.items = [(file.parent / image["file_name"], by_image.get(image["id"], []))
-                      for image in content["images"]]
+        self.items += [(file.parent / image["file_name"], by_image.get(image["id"], []))
+                       for image in content["images"] if image.get("labelled", True)]
 
     def __len__(self):
         return len(self.items)
 
     def load(self, i):
-        """BGR image; instance id map (-1: none); list of (class, stem u, stem v) by id."""
+        """BGR image; map of instance ids, SOIL or UNKNOWN; list of (class, stem u, stem v) by id."""
         if i not in self.decoded:
             sample = self._decode(i)
             size = sample[0].nbytes + sample[1].nbytes
@@ -99,10 +106,13 @@ class CocoSet:
         image = cv2.imread(str(path), cv2.IMREAD_COLOR)
         if image is None:
             raise SystemExit(f"{path}: not an image")
-        ids = np.full(image.shape[:2], -1, np.int16)
+        ids = np.full(image.shape[:2], SOIL, np.int16)
         plants = []
         for class_index, annotation in annotations:
             mask = mask_of(annotation, *image.shape[:2])
+            if annotation.get("iscrowd"):
+                ids[(mask > 0) & (ids == SOIL)] = UNKNOWN
+                continue
             keypoints = annotation.get("keypoints")
             if keypoints and keypoints[2] > 0:
                 stem = keypoints[:2]
@@ -117,11 +127,13 @@ class CocoSet:
 
 
 def targets(ids, plants, stride=STRIDE):
-    """Maps at the output's stride: plant share, class (-1: none), stem heatmap, offsets."""
+    """Maps at the output's stride: plant share (-1: not known), class (-1: none), stem heatmap,
+    offsets."""
     height, width = ids.shape[0] // stride, ids.shape[1] // stride
     blocks = ids[:height * stride, :width * stride].reshape(height, stride, width, stride)
     blocks = blocks.transpose(0, 2, 1, 3).reshape(height, width, stride * stride)
     share = (blocks >= 0).mean(axis=2).astype(np.float32)
+    share[(blocks == UNKNOWN).any(axis=2)] = -1.0
     # The plant of a cell is the one that its middle rows show most; the maximum id is as good where
     # two meet.
     owner = blocks.max(axis=2)

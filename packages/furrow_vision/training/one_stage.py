@@ -59,19 +59,21 @@ class OneStage(nn.Module):
         return self.head(top)
 
 
-def loss(output, share, classes, heat, offsets, class_weights):
-    """Sum of: cross entropy with Dice for plant, penalty-reduced focal loss for stems (Zhou et al.
-    2019), L1 for offsets, weighted cross entropy for classes on plant cells."""
+def loss(output, share, classes, heat, offsets, class_weights, crops):
+    """Sum of: cross entropy with Dice for plant, where it is known; penalty-reduced focal loss for
+    stems (Zhou et al. 2019); L1 for offsets; weighted cross entropy for classes on plant cells; and
+    crop against weed, of the first `crops` classes against the others."""
     plant, stem, offset, logits = output[:, 0], output[:, 1], output[:, 2:4], output[:, 4:]
-    probability = torch.sigmoid(plant)
-    overlap = 2 * (probability * share).sum() + 1
-    dice = 1 - overlap / (probability.sum() + share.sum() + 1)
-    plant_loss = F.binary_cross_entropy_with_logits(plant, share) + 0.5 * dice
+    known = share >= 0
+    share = share.clamp(min=0)
+    probability = torch.sigmoid(plant) * known
+    plant_loss = F.binary_cross_entropy_with_logits(plant, share, known.float()) \
+        + 0.5 * _dice(probability, share)
 
     p = torch.sigmoid(stem).clamp(1e-4, 1 - 1e-4)
     peak = (heat >= 0.999).float()
     positive = -((1 - p) ** 2) * torch.log(p) * peak
-    negative = -((1 - heat) ** 4) * p ** 2 * torch.log(1 - p) * (1 - peak)
+    negative = -((1 - heat) ** 4) * p ** 2 * torch.log(1 - p) * (1 - peak) * known
     stem_loss = (positive.sum() + negative.sum()) / peak.sum().clamp(min=1)
 
     inside = classes >= 0
@@ -80,4 +82,24 @@ def loss(output, share, classes, heat, offsets, class_weights):
     class_loss = (F.cross_entropy(logits, classes.clamp(min=0), class_weights, reduction="none")
                   * inside).sum() / count
     parts = {"plant": plant_loss, "stem": stem_loss, "offset": offset_loss, "class": class_loss}
-    return plant_loss + 0.5 * stem_loss + offset_loss + class_loss, parts
+    total = plant_loss + 0.5 * stem_loss + offset_loss + 0.5 * class_loss
+    if 0 < crops < logits.shape[1]:
+        parts["kind"] = _kind_loss(logits, probability, share, classes, crops)
+        total = total + parts["kind"]
+    return total, parts
+
+
+def _dice(probability, share):
+    return 1 - (2 * (probability * share).sum() + 1) / (probability.sum() + share.sum() + 1)
+
+
+def _kind_loss(logits, probability, share, classes, crops):
+    """Crop against weed: cross entropy of each cell of a plant, every one as dear as the other, and
+    Dice of both masks, which weighs the rarer kind as much as the other."""
+    odds = torch.logsumexp(logits[:, :crops], 1) - torch.logsumexp(logits[:, crops:], 1)
+    inside, crop = (classes >= 0).float(), ((classes >= 0) & (classes < crops)).float()
+    entropy = F.binary_cross_entropy_with_logits(odds, crop, inside, reduction="sum") \
+        / inside.sum().clamp(min=1)
+    is_crop = torch.sigmoid(odds)
+    return entropy + 0.5 * _dice(probability * is_crop, share * crop) \
+        + 0.5 * _dice(probability * (1 - is_crop), share * (inside - crop))

@@ -11,38 +11,24 @@ finds one. With --epochs alone the same seed gives the same weights; --minutes b
 instead, and the rate of learning falls with whichever is nearer its end.
 """
 
-import argparse
 import hashlib
-import json
 import math
 import pathlib
-import time
 
-import cv2
 import numpy as np
 import torch
 
-import augment
-import data
 import mask_rcnn
-import train_one_stage
+import training_run
+from training_run import to_tensor
 
 LEAST_VISIBLE_PX = 12
+LOSSES = ["objectness", "proposal", "plant", "class", "box", "stem", "mask"]
+SCORES = ["precision", "recall", "class_right"]
 
 
-class Samples(torch.utils.data.Dataset):
-    """Crops of the training images, augmented; the random numbers depend on seed, epoch and index."""
-
-    def __init__(self, coco, size, seed):
-        self.coco, self.size, self.seed, self.epoch = coco, size, seed, 0
-
-    def __len__(self):
-        return len(self.coco)
-
-    def __getitem__(self, i):
-        rng = np.random.default_rng((self.seed, self.epoch, i))
-        image, ids, plants = augment.crop_and_turn(rng, *self.coco.load(i), self.size)
-        return train_one_stage.to_tensor(augment.photometric(rng, image)), targets(ids, plants)
+def make_sample(image, ids, plants):
+    return to_tensor(image), targets(ids, plants)
 
 
 def targets(ids, plants):
@@ -78,7 +64,7 @@ def validate(model, coco, crops, device, limit=60):
         image, ids, plants = coco.load(i)
         height, width = ids.shape[0] // 32 * 32, ids.shape[1] // 32 * 32
         wanted = targets(ids[:height, :width], plants)
-        image = train_one_stage.to_tensor(image[:height, :width])
+        image = to_tensor(image[:height, :width])
         boxes, _, labels, stems = [x.cpu() for x in model.detect(image.to(device))]
         truths, found = truths + len(wanted["boxes"]), found + len(boxes)
         if len(boxes) == 0 or len(wanted["boxes"]) == 0:
@@ -134,27 +120,6 @@ def export(model, classes, out, resolution_mm_per_px):
     (out / "mask_rcnn.yaml").write_text("\n".join(lines) + "\n")
 
 
-def plot(log, file):
-    """Curves over the epochs as a picture."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4))
-    epochs = [row["epoch"] for row in log]
-    for name in ("objectness", "proposal", "plant", "class", "box", "stem", "mask"):
-        left.plot(epochs, [row[name] for row in log], label=name)
-    for name in ("precision", "recall", "class_right"):
-        right.plot(epochs, [row[name] for row in log], label=name)
-    left.set(title="training loss", xlabel="epoch", yscale="log")
-    right.set(title="validation, boxes at IoU 0.5", xlabel="epoch", ylim=(0, 1))
-    for axes in (left, right):
-        axes.legend()
-        axes.grid(alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(file, dpi=110)
-    pyplot.close(figure)
-
-
 def start_from(model, arguments, classes):
     """Weights of an earlier training: all of them, or those of a one-stage network's backbone."""
     if arguments.start:
@@ -173,79 +138,44 @@ def start_from(model, arguments, classes):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("data", type=pathlib.Path)
-    parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--start", type=pathlib.Path, help="mask_rcnn.pt to go on from")
+    parser = training_run.parser(__doc__.split("\n")[0], batch=4, size=320, rate=1e-3)
     parser.add_argument("--backbone", type=pathlib.Path, help="one_stage.pt whose backbone is taken")
-    parser.add_argument("--epochs", type=int, default=12)
-    parser.add_argument("--minutes", type=float, help="at most")
-    parser.add_argument("--batch", type=int, default=4)
-    parser.add_argument("--size", type=int, default=320)
-    parser.add_argument("--rate", type=float, default=1e-3)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--resolution", type=float, default=1.15, help="mm per px of the images")
     arguments = parser.parse_args()
-
-    torch.manual_seed(arguments.seed)
-    torch.set_num_threads(arguments.threads)
-    cv2.setNumThreads(1)
-    device = "cuda" if torch.cuda.is_available() else "cpu"
-    memory_bytes = 2 << 30
-    train = data.CocoSet(arguments.data / "train.json", memory_bytes=memory_bytes)
-    validation = data.CocoSet(arguments.data / "validation.json", train.classes, memory_bytes)
-    crops = sum(kind == "crop" for _, kind in train.classes)
+    device = training_run.prepare(arguments)
+    train, validation, crops = training_run.load_sets(arguments)
     model = mask_rcnn.MaskRcnn(len(train.classes))
     start_from(model, arguments, train.classes)
     model.to(device)
-    weights = train_one_stage.class_weights(train).to(device)
-    arguments.out.mkdir(parents=True, exist_ok=True)
-
-    samples = Samples(train, arguments.size, arguments.seed)
-    generator = torch.Generator().manual_seed(arguments.seed)
-    loader = torch.utils.data.DataLoader(samples, arguments.batch, shuffle=True, drop_last=True,
-                                         generator=generator, collate_fn=collate)
+    weights = training_run.class_weights(train).to(device)
+    samples = training_run.Samples(train, arguments.size, arguments.seed, make_sample)
+    loader = training_run.loader(samples, arguments, collate)
     optimizer = torch.optim.AdamW(model.parameters(), lr=arguments.rate, weight_decay=1e-4)
-    start, log, steps = time.time(), [], 0
-
-    def progress():
-        done = steps / (arguments.epochs * len(loader))
-        if arguments.minutes:
-            done = max(done, (time.time() - start) / 60 / arguments.minutes)
-        return min(done, 1.0)
-
+    progress = training_run.Progress(arguments, len(loader))
+    log = training_run.Log(arguments.out, "mask_rcnn_", LOSSES, SCORES)
     for epoch in range(arguments.epochs):
         samples.epoch = epoch
-        sums, first = {}, steps
+        sums, first = {}, progress.steps
         for images, wanted in loader:
-            done = progress()
-            rate = arguments.rate * min(steps / 100 + 0.01, 1.0, 0.01 + 0.5 * (1 + math.cos(math.pi * done)))
-            for group in optimizer.param_groups:
-                group["lr"] = rate
+            progress.set_rate(optimizer)
             wanted = [{k: t.to(device) for k, t in w.items()} for w in wanted]
             total, parts = model.loss(images.to(device), wanted, weights)
             optimizer.zero_grad()
             total.backward()
             torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)
             optimizer.step()
-            steps += 1
+            progress.steps += 1
             for name, value in parts.items():
                 sums[name] = sums.get(name, 0.0) + float(value)
-            if steps % 50 == 0:
-                print(f"step {steps}: {(time.time() - start) / steps:.2f} s a step, loss {float(total):.3f}",
-                      flush=True)
-            if done >= 1.0:
+            if progress.steps % 50 == 0:
+                print(f"step {progress.steps}: {60 * progress.minutes() / progress.steps:.2f} s a step, "
+                      f"loss {float(total):.3f}", flush=True)
+            if progress.done():
                 break
-        row = {"epoch": epoch, "minutes": (time.time() - start) / 60,
-               **{name: value / (steps - first) for name, value in sums.items()},
-               **validate(model, validation, crops, device)}
-        log.append(row)
-        print(json.dumps({k: round(v, 4) for k, v in row.items()}), flush=True)
+        log.add({"epoch": epoch, "minutes": progress.minutes(),
+                 **{name: value / (progress.steps - first) for name, value in sums.items()},
+                 **validate(model, validation, crops, device)})
         torch.save({"model": model.state_dict(), "classes": train.classes}, arguments.out / "mask_rcnn.pt")
-        (arguments.out / "mask_rcnn_log.json").write_text(json.dumps(log, indent=1))
-        plot(log, arguments.out / "mask_rcnn_curves.png")
-        if progress() >= 1.0:
+        if progress.done():
             break
     export(model, train.classes, arguments.out, arguments.resolution)
 

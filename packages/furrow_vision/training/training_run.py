@@ -1,0 +1,151 @@
+"""What both trainings share: options, data, the rate of learning, the log and its picture."""
+
+import argparse
+import json
+import math
+import pathlib
+import time
+
+import cv2
+import numpy as np
+import torch
+
+import augment
+import data
+
+
+def parser(description, batch, size, rate):
+    """The options of both; the caller adds its own."""
+    options = argparse.ArgumentParser(description=description)
+    options.add_argument("data", type=pathlib.Path, nargs="+",
+                         help="folders of train.json and validation.json; their images are put together")
+    options.add_argument("--out", type=pathlib.Path, required=True, help="folder of the model")
+    options.add_argument("--start", type=pathlib.Path, help="weights (.pt) to go on from")
+    options.add_argument("--epochs", type=int, default=12)
+    options.add_argument("--minutes", type=float, help="at most")
+    options.add_argument("--batch", type=int, default=batch)
+    options.add_argument("--size", type=int, default=size, help="px a side of the crops")
+    options.add_argument("--rate", type=float, default=rate, help="of learning, at its highest")
+    options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--threads", type=int, default=2)
+    options.add_argument("--resolution", type=float, default=1.15, help="mm per px of the images")
+    return options
+
+
+def prepare(arguments):
+    """Sets seeds and threads, makes the folder; returns the device."""
+    torch.manual_seed(arguments.seed)
+    torch.set_num_threads(arguments.threads)
+    cv2.setNumThreads(1)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    return "cuda" if torch.cuda.is_available() else "cpu"
+
+
+def load_sets(arguments, classes=None):
+    """Training and validation set, and how many of the classes are crops."""
+    train = data.CocoSet([folder / "train.json" for folder in arguments.data], classes)
+    validation = data.CocoSet([folder / "validation.json" for folder in arguments.data],
+                              train.classes, memory_bytes=1 << 30)
+    return train, validation, sum(kind == "crop" for _, kind in train.classes)
+
+
+class Samples(torch.utils.data.Dataset):
+    """Crops of the training images, augmented, as `make` turns them into tensors. The random numbers
+    depend on seed, epoch and index."""
+
+    def __init__(self, coco, size, seed, make):
+        self.coco, self.size, self.seed, self.make, self.epoch = coco, size, seed, make, 0
+
+    def __len__(self):
+        return len(self.coco)
+
+    def __getitem__(self, i):
+        rng = np.random.default_rng((self.seed, self.epoch, i))
+        image, ids, plants = augment.crop_and_turn(rng, *self.coco.load(i), self.size)
+        return self.make(augment.photometric(rng, image), ids, plants)
+
+
+def loader(samples, arguments, collate=None):
+    """Whole batches in an order that the seed fixes."""
+    if len(samples) < arguments.batch:
+        raise SystemExit(f"{len(samples)} labelled images are fewer than --batch {arguments.batch}")
+    generator = torch.Generator().manual_seed(arguments.seed)
+    return torch.utils.data.DataLoader(samples, arguments.batch, shuffle=True, drop_last=True,
+                                       generator=generator, collate_fn=collate)
+
+
+def to_tensor(bgr):
+    return torch.from_numpy(np.ascontiguousarray(bgr.transpose(2, 0, 1))).float() / 255.0
+
+
+def class_weights(coco, limit=200):
+    """Inverse square root of each class's pixels, so that small weeds count beside large crops."""
+    pixels = np.ones(len(coco.classes))
+    for i in range(0, len(coco), max(len(coco) // limit, 1)):
+        _, ids, plants = coco.load(i)
+        counts = np.bincount(ids[ids >= 0], minlength=len(plants))
+        for (class_index, _, _), count in zip(plants, counts):
+            pixels[class_index] += count
+    weights = 1 / np.sqrt(pixels)
+    return torch.tensor(weights / weights.mean(), dtype=torch.float32)
+
+
+class Progress:
+    """How far a training is, by its steps or by its time, whichever is nearer the end."""
+
+    WARM_UP_STEPS = 100
+
+    def __init__(self, arguments, steps_per_epoch):
+        self.highest_rate, self.minutes_at_most = arguments.rate, arguments.minutes
+        self.steps_at_most = arguments.epochs * steps_per_epoch
+        self.start, self.steps = time.time(), 0
+
+    def minutes(self):
+        return (time.time() - self.start) / 60
+
+    def share(self):
+        done = self.steps / self.steps_at_most
+        if self.minutes_at_most:
+            done = max(done, self.minutes() / self.minutes_at_most)
+        return min(done, 1.0)
+
+    def done(self):
+        return self.share() >= 1.0
+
+    def set_rate(self, optimizer):
+        """A short rise, then half a cosine (Loshchilov and Hutter 2017)."""
+        rise = min(self.steps / self.WARM_UP_STEPS + 0.01, 1.0)
+        fall = 0.01 + 0.5 * (1 + math.cos(math.pi * self.share()))
+        for group in optimizer.param_groups:
+            group["lr"] = self.highest_rate * min(rise, fall)
+
+
+class Log:
+    """One row an epoch: printed, written as JSON, drawn as curves."""
+
+    def __init__(self, folder, prefix, losses, scores):
+        self.folder, self.prefix, self.losses, self.scores, self.rows = folder, prefix, losses, scores, []
+
+    def add(self, row):
+        self.rows.append(row)
+        print(json.dumps({name: round(value, 4) for name, value in row.items()}), flush=True)
+        (self.folder / f"{self.prefix}log.json").write_text(json.dumps(self.rows, indent=1))
+        self._plot(self.folder / f"{self.prefix}curves.png")
+
+    def _plot(self, file):
+        import matplotlib
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+        figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4))
+        epochs = [row["epoch"] for row in self.rows]
+        for axes, names in ((left, self.losses), (right, self.scores)):
+            for name in names:
+                axes.plot(epochs, [row[name] for row in self.rows], label=name, marker=".")
+        left.set(title="training loss", xlabel="epoch", yscale="log")
+        right.set(title="validation", xlabel="epoch", ylim=(0, 1))
+        for axes in (left, right):
+            axes.legend()
+            axes.grid(alpha=0.3)
+        figure.tight_layout()
+        figure.savefig(file, dpi=110)
+        pyplot.close(figure)
