@@ -10,6 +10,14 @@ Duration half(Duration d) {
   return Duration::nanoseconds(d.count_ns() / 2);
 }
 
+/// How far the axis still is from `q_m` after `time_s` of its quickest way there.
+double distance_left_m(const MotionLimits& limits, const MotionState& from, double q_m,
+                       double time_s) {
+  const auto profile = plan_s_curve(limits, from, q_m);
+  const MotionState at = profile.ok() ? profile->at(std::max(0.0, time_s)) : from;
+  return std::abs(at.position_m - q_m);
+}
+
 double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                            const Eigen::Vector2d& b) {
   const Eigen::Vector2d along = b - a;
@@ -74,7 +82,11 @@ bool AxisController::approach_stop(std::size_t index, Time now, Duration period)
   }
   if (stop.fire_while_moving && try_passing(index, *aim, now, period)) return false;
   const double available_s = (aim->crossing.emission - now).to_seconds();
-  if (arrival_s(aim->q_m, now) > available_s + parameters_.late_slack_s) {
+  // Late on the last millimetres, as after a small correction of the pose, is near enough: whether
+  // the spray lands well is then asked when it is due.
+  if (arrival_s(aim->q_m, now) > available_s + parameters_.late_slack_s &&
+      distance_left_m(limits_, setpoint_, aim->q_m, available_s) >
+          parameters_.placement_tolerance_m) {
     skip(stop, SkipReason::kLate, now);
     return true;
   }
