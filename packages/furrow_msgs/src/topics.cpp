@@ -27,6 +27,7 @@ enum Row : std::size_t {
   kJointStates,
   kEmergencyStop,
   kToolReset,
+  kMarkers,
   kTrueOdometry,
   kTrueField,
   kTrueInstances,
@@ -50,11 +51,11 @@ const std::array<Topic, kRows>& table() {
   static const std::array<Topic, kRows> rows = {{
       {"clock", &message_type<topics::Clock::Message>(), sensor_qos(10), 0, "",
        "Simulated time, as ROS 2 nodes with use_sim_time read it."},
-      {"camera/image", &message_type<topics::CameraImage::Message>(), sensor_qos(), 5,
+      {"camera/image", &message_type<topics::CameraImage::Message>(), sensor_qos(), 3,
        "camera_optical", "Colour image, bgr8."},
-      {"camera/depth", &message_type<topics::CameraDepth::Message>(), sensor_qos(), 5,
+      {"camera/depth", &message_type<topics::CameraDepth::Message>(), sensor_qos(), 3,
        "camera_optical", "Depth registered to the colour image, 32FC1, in m; 0 where unknown."},
-      {"camera/camera_info", &message_type<topics::CameraInfo::Message>(), sensor_qos(), 5,
+      {"camera/camera_info", &message_type<topics::CameraInfo::Message>(), sensor_qos(), 3,
        "camera_optical", "Intrinsics of the camera, in px."},
       {"wheel/odometry", &message_type<topics::WheelOdometry::Message>(), sensor_qos(50), 50,
        "odom", "Speed and yaw rate from the wheels, dead-reckoned pose; m, m/s, rad/s."},
@@ -71,11 +72,11 @@ const std::array<Topic, kRows>& table() {
        "base_link", "Transforms that stand: base_link to the cameras' optical frames."},
       {"robot_description", &message_type<topics::RobotDescription::Message>(), latched_qos(), 0,
        "", "The URDF."},
-      {"perception/instances", &message_type<topics::Instances::Message>(), sensor_qos(5), 5,
+      {"perception/instances", &message_type<topics::Instances::Message>(), sensor_qos(5), 3,
        "camera_optical", "The plants of one image: class, mask, box, stem (px and m), area (mm2)."},
-      {"tracker/tracks", &message_type<topics::Tracks::Message>(), sensor_qos(5), 5, "field",
+      {"tracker/tracks", &message_type<topics::Tracks::Message>(), sensor_qos(5), 3, "field",
        "Every plant that is held in view or memory, refined over views; m, mm2."},
-      {"planner/plan", &message_type<topics::Plan::Message>(), watched(sensor_qos(5), kPlanGap), 5,
+      {"planner/plan", &message_type<topics::Plan::Message>(), watched(sensor_qos(5), kPlanGap), 3,
        "field", "A route per axis and a decision for every track."},
       {"planner/heartbeat", &message_type<topics::PlannerHeartbeat::Message>(),
        watched(sensor_qos(1), kFastGap), 50, "",
@@ -90,11 +91,13 @@ const std::array<Topic, kRows>& table() {
        "Valves shut and axes stopped while active."},
       {"tool/reset", &message_type<topics::ToolReset::Message>(), event_qos(), 0, "",
        "Lets axes that made themselves safe start again."},
+      {"markers", &message_type<topics::Markers::Message>(), event_qos(), 3, "field",
+       "Plants, plan and sprays as RViz draws them; m."},
       {"truth/odometry", &message_type<topics::TrueOdometry::Message>(), sensor_qos(50), 50,
        "field", "Simulation only: the true pose of the base."},
       {"truth/field", &message_type<topics::TrueField::Message>(), latched_qos(), 0, "field",
        "Simulation only: the plants that are there; m, mm2."},
-      {"truth/instances", &message_type<topics::TrueInstances::Message>(), sensor_qos(5), 5,
+      {"truth/instances", &message_type<topics::TrueInstances::Message>(), sensor_qos(5), 3,
        "camera_optical", "Simulation only: what a perfect detector would tell."},
       {"truth/spray", &message_type<topics::TrueSpray::Message>(), event_qos(), 0, "field",
        "Simulation only: where a spray landed; m."},
@@ -171,6 +174,9 @@ const Topic& EmergencyStop::topic() {
 }
 const Topic& ToolReset::topic() {
   return table()[kToolReset];
+}
+const Topic& Markers::topic() {
+  return table()[kMarkers];
 }
 const Topic& TrueOdometry::topic() {
   return table()[kTrueOdometry];

@@ -123,6 +123,11 @@ struct ToolReset {
   [[nodiscard]] static const Topic& topic();
 };
 
+struct Markers {
+  using Message = visualization_msgs::msg::MarkerArray;
+  [[nodiscard]] static const Topic& topic();
+};
+
 struct TrueOdometry {
   using Message = nav_msgs::msg::Odometry;
   [[nodiscard]] static const Topic& topic();
