@@ -1,11 +1,11 @@
 #pragma once
 
+#include <fastdds/rtps/common/Locator.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <fastdds/rtps/common/Locator.h>
 #include <filesystem>
 
 namespace furrow::dds {

@@ -1,0 +1,57 @@
+#include <string>
+#include <utility>
+
+#include "field_markers.hpp"
+#include "furrow_graph/registry.hpp"
+#include "furrow_msgs/topics.hpp"
+
+namespace furrow::components {
+namespace {
+
+namespace topics = msgs::topics;
+
+struct Parameters {
+  std::string tool_file;
+
+  void visit(ParameterVisitor& v) {
+    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
+  }
+};
+
+/// Shows plants, plan and sprays to viewers of ROS 2.
+class Markers final : public graph::Component {
+ public:
+  static void describe(graph::Description& d) {
+    d.doc("Draws plants, plan and sprays for RViz.")
+        .parameters<Parameters>()
+        .input<topics::Tracks>()
+        .input<topics::Plan>(graph::Need::kOptional)
+        .input<topics::AxisEvent>(graph::Need::kOptional)
+        .output<topics::Markers>();
+  }
+
+  explicit Markers(graph::Context& context)
+      : markers_(geometry::load_tool_model(context.parameters<Parameters>().tool_file)),
+        out_(context.output<topics::Markers>()) {
+    context.input<topics::Tracks>(
+        [this](const auto& message) { publish(markers_.plants(*message)); });
+    context.input<topics::Plan>([this](const auto& message) { publish(markers_.plan(*message)); });
+    context.input<topics::AxisEvent>(
+        [this](const auto& message) { publish(markers_.spray(*message)); });
+  }
+
+ private:
+  void publish(visualization_msgs::msg::MarkerArray markers) const {
+    if (!markers.markers().empty()) out_.publish(std::move(markers));
+  }
+
+  FieldMarkers markers_;
+  graph::Output<topics::Markers> out_;
+};
+
+}  // namespace
+}  // namespace furrow::components
+
+extern "C" void furrow_register(furrow::graph::Registry& registry) {
+  registry.add<furrow::components::Markers>("markers");
+}
