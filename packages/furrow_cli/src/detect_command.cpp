@@ -55,8 +55,12 @@ int detect(DetectOptions options) {
     const auto loaded =
         load_image(image, options.vision.resolution_mm_per_px.value_or(kDefaultResolution_mm));
     detector.reset();  // images on their own are no sequence
-    auto plants = loaded.ok() ? detector.detect(loaded->view())
-                              : Result<std::vector<vision::Instance>>(loaded.error());
+    if (!loaded.ok()) {
+      std::cerr << "furrow: " << loaded.error().message << '\n';  // names the file
+      ++faults;
+      continue;
+    }
+    auto plants = detector.detect(loaded->view());
     if (!plants.ok()) {
       std::cerr << "furrow: " << options.images[i] << ": " << plants.error().message << '\n';
       ++faults;

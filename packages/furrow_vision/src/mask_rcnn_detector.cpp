@@ -69,7 +69,7 @@ class MaskRcnnDetector::Implementation {
  public:
   Implementation(const MaskRcnnParameters& parameters, const std::filesystem::path& model_file)
       : parameters_(checked(parameters)),
-        model_(load_model(model_file, ModelFile::Kind::kMaskRcnn, parameters.classes)),
+        model_(load_model(model_file, ModelFile::Kind::kMaskRcnn, parameters.network.classes)),
         backbone_(load_network(model_, "backbone")),
         box_head_(load_network(model_, "box_head")),
         mask_head_(load_network(model_, "mask_head")) {
@@ -104,7 +104,7 @@ class MaskRcnnDetector::Implementation {
     const double mm_per_px = 1000.0 * view.ground_distance_m / view.camera.intrinsics().fx_px;
     const cv::Size input =
         network_input_size(view.bgr.size(), mm_per_px, model_.ground_resolution_mm_per_px,
-                           parameters_.input_area_max_px);
+                           parameters_.network.input_area_max_px);
     const auto maps = pyramid(view.bgr, input);
     if (!maps.ok()) return maps.error();
     const auto proposals = propose(*maps, input);
@@ -283,7 +283,8 @@ class MaskRcnnDetector::Implementation {
       const cv::Rect inner = cv::boundingRect(own);
       if (inner.empty()) continue;
       Instance plant{.score = regions[i].score, .class_scores = regions[i].class_scores};
-      shift_towards_crops(parameters_.crop_log_odds, model_.classes, plant.class_scores);
+      shift_towards_crops(model_.crop_log_odds + parameters_.network.crop_log_odds, model_.classes,
+                          plant.class_scores);
       plant.crop_probability = crop_probability(plant.class_scores, model_.classes);
       plant.box_px = inner + extents[i].tl();
       plant.mask = own(inner).clone();
@@ -338,21 +339,7 @@ void MaskRcnnParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1e5},
           min_plant_area_mm2);
-  v.visit({.name = "crop_log_odds",
-           .description = "Added to the log-odds of a crop, where crops are more frequent than in "
-                          "training, or dearer",
-           .min = -10.0,
-           .max = 10.0},
-          crop_log_odds);
-  v.visit({.name = "input_area_max_px",
-           .unit = "px",
-           .description = "Larger inputs of the network are scaled down",
-           .min = 4096.0,
-           .max = 16e6},
-          input_area_max_px);
-  v.visit({.name = "classes",
-           .description = "Names of the classes that the model must have, in order; empty: any"},
-          classes);
+  network.visit(v);
 }
 
 MaskRcnnDetector::MaskRcnnDetector(const MaskRcnnParameters& parameters,

@@ -137,8 +137,8 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
   if (!root.IsMap()) throw Malformed{1, "", "is not a model file: no map of keys"};
   ModelFile model;
   const std::string kind = root["kind"].IsDefined() ? text(root, "kind") : "one_stage";
-  std::set<std::string> known = {"kind", "name", "classes", "ground_resolution_mm_per_px",
-                                 "input_channels"};
+  std::set<std::string> known = {
+      "kind", "name", "classes", "ground_resolution_mm_per_px", "input_channels", "crop_log_odds"};
   std::vector<std::string> parts;
   if (kind == "one_stage") {
     parts = {"network"};
@@ -159,6 +159,9 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
   }
   model.ground_resolution_mm_per_px = number<double>(needed(root, "ground_resolution_mm_per_px"),
                                                      "ground_resolution_mm_per_px", 0.01, 100.0);
+  if (const YAML::Node odds = root["crop_log_odds"]; odds.IsDefined()) {
+    model.crop_log_odds = number<double>(odds, "crop_log_odds", -10.0, 10.0);
+  }
   if (model.kind == ModelFile::Kind::kOneStage) {
     model.stride_px = number<int>(needed(root, "stride"), "stride", 1, 32);
     model.offset_unit_px =

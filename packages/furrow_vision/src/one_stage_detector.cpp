@@ -15,7 +15,7 @@ class OneStageDetector::Implementation {
  public:
   Implementation(const OneStageParameters& parameters, const std::filesystem::path& model_file)
       : parameters_(checked(parameters)),
-        model_(load_model(model_file, ModelFile::Kind::kOneStage, parameters.classes)),
+        model_(load_model(model_file, ModelFile::Kind::kOneStage, parameters.network.classes)),
         network_(load_network(model_, "network")) {
     // A network that does not fit its model file is found here and not in the field.
     constexpr int kProbe_px = 64;
@@ -28,7 +28,7 @@ class OneStageDetector::Implementation {
     const double mm_per_px = 1000.0 * view.ground_distance_m / view.camera.intrinsics().fx_px;
     const cv::Size input =
         network_input_size(view.bgr.size(), mm_per_px, model_.ground_resolution_mm_per_px,
-                           parameters_.input_area_max_px);
+                           parameters_.network.input_area_max_px);
     const auto maps = run(view.bgr, input);
     if (!maps.ok()) return maps.error();
     const cv::Point2d input_per_px(input.width / static_cast<double>(view.bgr.cols),
@@ -94,7 +94,8 @@ class OneStageDetector::Implementation {
     plant.score = decoded.plant_probability *
                   (kWithoutStem + (1.0 - kWithoutStem) * decoded.stem_probability);
     plant.class_scores = decoded.class_scores;
-    shift_towards_crops(parameters_.crop_log_odds, model_.classes, plant.class_scores);
+    shift_towards_crops(model_.crop_log_odds + parameters_.network.crop_log_odds, model_.classes,
+                        plant.class_scores);
     plant.crop_probability = crop_probability(plant.class_scores, model_.classes);
   }
 
@@ -112,21 +113,7 @@ void OneStageParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1.0},
           cell_cover_min);
-  v.visit({.name = "crop_log_odds",
-           .description = "Added to the log-odds of a crop, where crops are more frequent than in "
-                          "training, or dearer",
-           .min = -10.0,
-           .max = 10.0},
-          crop_log_odds);
-  v.visit({.name = "input_area_max_px",
-           .unit = "px",
-           .description = "Larger inputs of the network are scaled down",
-           .min = 4096.0,
-           .max = 16e6},
-          input_area_max_px);
-  v.visit({.name = "classes",
-           .description = "Names of the classes that the model must have, in order; empty: any"},
-          classes);
+  network.visit(v);
 }
 
 OneStageDetector::OneStageDetector(const OneStageParameters& parameters,

@@ -271,7 +271,7 @@ TEST_F(OneStage, RefusesBadImages) {
 
 TEST_F(OneStage, HugeResolutionIsBounded) {
   OneStageParameters parameters;
-  parameters.input_area_max_px = 4096;
+  parameters.network.input_area_max_px = 4096;
   OneStageDetector bounded(parameters, kData / "one_stage.yaml");
   const auto found = bounded.detect({bgr_, none_, camera_, 1000.0});
   EXPECT_TRUE(found.ok());
@@ -336,10 +336,31 @@ TEST_F(ModelFiles, SayWhatIsWrong) {
   says(fault(edited("one_stage.onnx", "none.onnx"), onnx_), "none.onnx");
   says(fault(edited("name:", "kind: mask_rcnn\nname:"), onnx_), "network: is not a key");
   OneStageParameters parameters;
-  parameters.classes = {"beet", "thistle"};
+  parameters.network.classes = {"beet", "thistle"};
   says(fault(yaml_, onnx_, parameters), "has the classes beet, goosefoot, not beet, thistle");
-  parameters.classes = {"beet", "goosefoot"};
+  parameters.network.classes = {"beet", "goosefoot"};
   EXPECT_EQ(fault(yaml_, onnx_, parameters), "");
+}
+
+TEST_F(ModelFiles, CropsMayWeighMore) {
+  EXPECT_NE(fault("crop_log_odds: 11\n" + yaml_, onnx_).find("out of range"), std::string::npos);
+  cv::Mat bgr(128, 192, CV_8UC3, cv::Scalar(20, 30, 45));
+  cv::circle(bgr, {50, 62}, 12, cv::Scalar(40, 200, 60), -1);
+  const geometry::PinholeCamera camera({192, 128, 500.0, 500.0, 95.5, 63.5});
+  const auto log_odds = [&](const std::string& yaml, const OneStageParameters& parameters) {
+    EXPECT_EQ(fault(yaml, onnx_), "");
+    OneStageDetector detector(parameters, folder_.path() / "m.yaml");
+    const auto found = detector.detect({bgr, cv::Mat(), camera, 1.0});
+    EXPECT_TRUE(found.ok() && found->size() == 1);
+    const double crop = found->at(0).crop_probability;
+    return std::log(crop / (1.0 - crop));
+  };
+  OneStageParameters parameters;
+  const double plain = log_odds(yaml_, parameters);
+  const std::string with_odds = "crop_log_odds: 1.5\n" + yaml_;
+  EXPECT_NEAR(log_odds(with_odds, parameters), plain + 1.5, 1e-6);
+  parameters.network.crop_log_odds = -0.5;
+  EXPECT_NEAR(log_odds(with_odds, parameters), plain + 1.0, 1e-6);
 }
 
 TEST_F(ModelFiles, WhatIsNoNetworkIsRefused) {

@@ -94,12 +94,12 @@ def write_part(module, example, file, inputs, outputs, axes):
             f"{file.stem[len('mask_rcnn_'):]}_sha256: {hashlib.sha256(content).hexdigest()}"]
 
 
-def export(model, classes, out, resolution_mm_per_px):
+def export(model, classes, out, resolution_mm_per_px, crop_log_odds):
     levels, channels = range(len(mask_rcnn.STRIDES)), mask_rcnn.CHANNELS
     names = [f"{kind}_{i}" for kind in ("features", "objectness", "deltas") for i in levels]
     lines = ["# Written by train_mask_rcnn.py beside the networks.", "kind: mask_rcnn",
              "name: mask_rcnn", f"ground_resolution_mm_per_px: {resolution_mm_per_px}",
-             f"feature_levels: {len(levels)}", "stems: true",
+             f"crop_log_odds: {crop_log_odds:.2f}", f"feature_levels: {len(levels)}", "stems: true",
              f"anchors: {{sizes_px: {list(mask_rcnn.ANCHOR_SIZES)}, "
              f"strides_px: {list(mask_rcnn.STRIDES)}, aspect_ratios: {list(mask_rcnn.ASPECT_RATIOS)}}}"]
     lines += write_part(mask_rcnn.ExportedBackbone(model), torch.zeros(1, 3, 480, 640),
@@ -177,7 +177,8 @@ def main():
         torch.save({"model": model.state_dict(), "classes": train.classes}, arguments.out / "mask_rcnn.pt")
         if progress.done():
             break
-    export(model, train.classes, arguments.out, arguments.resolution)
+    export(model, train.classes, arguments.out, arguments.resolution,
+           training_run.crop_log_odds(weights.cpu(), crops))
 
 
 if __name__ == "__main__":

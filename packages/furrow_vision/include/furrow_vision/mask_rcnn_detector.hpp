@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_vision/detector.hpp"
+#include "furrow_vision/network_use.hpp"
 #include "furrow_vision/vegetation_fusion.hpp"
 
 namespace furrow::vision {
@@ -16,14 +16,12 @@ namespace furrow::vision {
 struct MaskRcnnParameters {
   VegetationFusionParameters vegetation;
   double score_min = 0.3;
-  double iou_max = 0.4;
+  double iou_max = 0.3;
   double proposal_iou_max = 0.7;
   std::int64_t proposals_max = 200;
   std::int64_t plants_max = 200;
-  double min_plant_area_mm2 = 20.0;
-  double crop_log_odds = 1.0;  ///< rare weeds weighed more in training
-  std::int64_t input_area_max_px = 2'000'000;
-  std::vector<std::string> classes;
+  double min_plant_area_mm2 = 10.0;
+  NetworkUse network;
   void visit(ParameterVisitor& v);
 };
 

@@ -37,7 +37,8 @@ struct AnchorLayout {
 ///
 /// A mask_rcnn has `backbone`, `box_head` and `mask_head` in place of `network`, and for stride and
 /// offset_unit_px `anchors: {sizes_px: [], strides_px: [], aspect_ratios: []}` and feature_levels,
-/// and may say `stems: true`.
+/// and may say `stems: true`. Either may name `crop_log_odds`, added to the log-odds of a crop:
+/// what makes up for classes that training weighed differently.
 struct ModelFile {
   enum class Kind { kOneStage, kMaskRcnn };
   Kind kind = Kind::kOneStage;
@@ -45,6 +46,7 @@ struct ModelFile {
   std::vector<ModelPart> parts;
   std::vector<SubClass> classes;
   double ground_resolution_mm_per_px = 0.0;
+  double crop_log_odds = 0.0;
   std::int64_t stride_px = 0;       ///< one_stage
   double offset_unit_px = 0.0;      ///< one_stage
   AnchorLayout anchors;             ///< mask_rcnn

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_vision/detector.hpp"
+#include "furrow_vision/network_use.hpp"
 #include "furrow_vision/one_stage_decoding.hpp"
 #include "furrow_vision/vegetation_fusion.hpp"
 
@@ -18,22 +17,20 @@ struct OneStageParameters {
   VegetationFusionParameters vegetation;
   OneStageDecodingParameters decoding;
   double cell_cover_min = 0.1;
-  double crop_log_odds = 1.0;  ///< rare weeds weighed more in training
-  std::int64_t input_area_max_px = 2'000'000;
-  std::vector<std::string> classes;
+  NetworkUse network;
   void visit(ParameterVisitor& v);
 };
 
 /// A network that gives plant, stem, offset and class maps in one pass (ONNX, run by OpenCV). The
 /// image is scaled to the ground resolution that the model was trained for, as far as
-/// input_area_max_px allows; the mask is made at the image's own resolution. The score is the mean
-/// probability of a plant, held down where no stem is seen. Keeps no state over frames. Detection
-/// uses OpenCV's global number of threads.
+/// network.input_area_max_px allows; the mask is made at the image's own resolution. The score is
+/// the mean probability of a plant, held down where no stem is seen. Keeps no state over frames.
+/// Detection uses OpenCV's global number of threads.
 class OneStageDetector final : public Detector {
  public:
   /// Throws ConfigError: parameters out of range; a model file that is missing, malformed, of
-  /// another kind, or of other classes than `parameters.classes`; a network that is missing,
-  /// truncated, damaged, or does not fit its model file.
+  /// another kind, or of other classes than `parameters.network.classes`; a network that is
+  /// missing, truncated, damaged, or does not fit its model file.
   OneStageDetector(const OneStageParameters& parameters, const std::filesystem::path& model_file);
   ~OneStageDetector() override;
 
