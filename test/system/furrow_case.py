@@ -1,6 +1,8 @@
 """What the tests of the `furrow` command share."""
 
 import csv
+import fcntl
+import functools
 import json
 import os
 import pathlib
@@ -19,6 +21,26 @@ def furrow_program():
         if (folder / "bin" / "furrow").exists():
             return folder / "bin" / "furrow"
     raise FileNotFoundError(f"no furrow command beside or in {prefix}: build furrow_cli first")
+
+
+@functools.cache
+def domain():
+    """A DDS domain that no other test on this host uses as long as this process lives. Up to 100:
+    the ports of those above are given to anybody."""
+    first = os.getpid()
+    for number in range(91):
+        candidate = 10 + (first + number) % 91
+        path = pathlib.Path(tempfile.gettempdir()) / f"furrow_test_domain_{candidate}"
+        try:
+            lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        except PermissionError:
+            continue
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return candidate
+        except BlockingIOError:
+            os.close(lock)
+    raise RuntimeError("other tests use all domains")
 
 
 class FurrowCase(unittest.TestCase):

@@ -9,15 +9,10 @@ import subprocess
 import time
 import unittest
 
-from furrow_case import FurrowCase, furrow_program
+from furrow_case import FurrowCase, domain, furrow_program
 
 # A short row without images: 7 s of simulated time.
 SHORT_RUN = ["--graph", "weeding_true_detections", "--seed", "5", "--length", "1"]
-
-
-def domain():
-    """Of this process, so that runs beside each other do not meet."""
-    return 100 + (os.getpid() + 65) % 130
 
 
 class RecordingCase(FurrowCase):

@@ -15,6 +15,7 @@
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_dds/dds_transport.hpp"
+#include "furrow_dds/test_domain.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/topics.hpp"
@@ -232,7 +233,7 @@ double longest_of_many() {
   Outcome outcome;
   const char* repetitions = std::getenv("FURROW_REPETITIONS");
   outcome.wanted = repetitions == nullptr ? 100 : std::atoi(repetitions);
-  outcome.domain = 100 + static_cast<int>(getpid() % 100);
+  outcome.domain = static_cast<int>(dds::test_domain());
   graph::Registry registry = make_registry(outcome);
   dds::DdsTransport transport(wire(outcome.domain));
   graph::Runtime runtime(make_graph(), registry,

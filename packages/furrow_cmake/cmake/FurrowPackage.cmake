@@ -100,12 +100,13 @@ function(furrow_benchmark target)
   install(TARGETS ${target} RUNTIME DESTINATION lib/${PROJECT_NAME})
 endfunction()
 
-# A GoogleTest program. FURROW_TEST_DATA_DIR names the package's test folder.
+# A GoogleTest program. FURROW_TEST_DATA_DIR names the package's test folder. AMONG_SYSTEM_TESTS: it
+# takes long in real time, and is run with the system tests, beside others.
 function(furrow_test target)
   if(NOT BUILD_TESTING)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "AMONG_SYSTEM_TESTS" "TIMEOUT" "SOURCES;LINK" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
@@ -114,6 +115,10 @@ function(furrow_test target)
   target_link_libraries(${target} PRIVATE ${ARG_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${target} PRIVATE
     FURROW_TEST_DATA_DIR="${CMAKE_CURRENT_SOURCE_DIR}/test")
+  if(ARG_AMONG_SYSTEM_TESTS)
+    install(TARGETS ${target} RUNTIME DESTINATION lib/${PROJECT_NAME})
+    return()
+  endif()
   # One ctest entry a program: starting a process for each case would dominate the run.
   add_test(NAME ${target} COMMAND ${target}
            --gtest_output=xml:${CMAKE_BINARY_DIR}/test_results/${PROJECT_NAME}/${target}.gtest.xml)

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "furrow_dds/dds_transport.hpp"
+#include "furrow_dds/test_domain.hpp"
 #include "furrow_msgs/message_types.hpp"
 #include "furrow_msgs/sensor_msgs.h"
 #include "furrow_msgs/std_msgs.h"
@@ -18,11 +17,6 @@
 namespace furrow::dds {
 
 inline constexpr std::chrono::seconds kPatience{5};
-
-/// A domain of this test process, so that runs beside each other do not meet.
-inline std::int64_t test_domain() {
-  return 100 + getpid() % 131;
-}
 
 inline DdsParameters test_parameters(const std::string& name,
                                      const std::vector<std::string>& transports = {"shm", "udp"}) {

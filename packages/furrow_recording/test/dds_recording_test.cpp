@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "furrow_dds/dds_transport.hpp"
+#include "furrow_dds/test_domain.hpp"
 #include "furrow_msgs/message_types.hpp"
 #include "furrow_msgs/std_msgs.h"
 #include "furrow_recording/dds_player.hpp"
@@ -17,8 +18,7 @@ namespace {
 
 dds::DdsParameters on_loopback(const std::string& name) {
   dds::DdsParameters parameters;
-  // A domain of this test process, so that runs beside each other do not meet.
-  parameters.domain_id = 100 + getpid() % 131;
+  parameters.domain_id = dds::test_domain();
   parameters.process_name = name;
   parameters.shm_segment_mb = 16;
   return parameters;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace furrow::dds {
+
+/// For tests: a DDS domain that no other test on this host uses as long as this process lives, by a
+/// lock on a file of the temporary folder. From 10 to 100: the ports of those above are given to
+/// anybody. Throws std::runtime_error when all are in use.
+[[nodiscard]] inline std::int64_t test_domain() {
+  static const std::int64_t claimed = [] {
+    constexpr int kFirst = 10;
+    constexpr int kCount = 91;
+    for (int i = 0; i < kCount; ++i) {
+      const int domain = kFirst + (getpid() + i) % kCount;
+      const auto path =
+          std::filesystem::temp_directory_path() / ("furrow_test_domain_" + std::to_string(domain));
+      const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+      if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return domain;
+      if (file >= 0) ::close(file);
+    }
+    throw std::runtime_error("other tests use all domains");
+  }();
+  return claimed;
+}
+
+}  // namespace furrow::dds
