@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Parameters {
   std::string species_file;
   double crop_threshold = 0.5;
   double max_pose_age_s = 0.2;
+  double max_tracks_age_s = 2.0;
   double heartbeat_rate_hz = 50.0;
   planning::PlannerParameters planner;
   planning::HarmfulnessParameters harmfulness;
@@ -45,6 +47,13 @@ struct Parameters {
              .min = 0.01,
              .max = 10.0},
             max_pose_age_s);
+    v.visit({.name = "max_tracks_age_s",
+             .unit = "s",
+             .description = "targets whose newest view is older are stale: they are not treated "
+                            "until they have been seen again",
+             .min = 0.05,
+             .max = 60.0},
+            max_tracks_age_s);
     v.visit({.name = "heartbeat_rate_hz",
              .unit = "Hz",
              .description = "that the planner is alive, for those who act on its plans",
@@ -183,7 +192,11 @@ class PlannerComponent final : public graph::Component {
       context_.health(graph::HealthLevel::kWarn, base.error().message);
       return;
     }
-    take(tracks);
+    // A stamp from the future is no fresher than one equally far in the past.
+    const Time seen = graph::from_msg(tracks.header().stamp());
+    const bool stale = std::abs((now - seen).to_seconds()) > parameters_.max_tracks_age_s;
+    last_tracks_ = now;
+    take(tracks, stale);
     const planning::RobotState robot{base->X_FB.x_m, base->X_FB.y_m, base->speed_mps};
     if (const Status moved = view_->advance(robot, robot.x_m + seen_x_m_); !moved.ok()) {
       context_.count("standing_or_reversing");
@@ -197,7 +210,12 @@ class PlannerComponent final : public graph::Component {
       return;
     }
     if (*planned) context_.count("replanned");
-    context_.health(graph::HealthLevel::kOk, "");
+    if (stale) {
+      context_.count("stale_tracks");
+      context_.health(graph::HealthLevel::kWarn, "the targets are stale");
+    } else {
+      context_.health(graph::HealthLevel::kOk, "");
+    }
     publish(*base, tracks.header().stamp());
   }
 
@@ -207,9 +225,14 @@ class PlannerComponent final : public graph::Component {
     message.sender(context_.name());
     message.count(++beats_);
     heartbeat_out_.publish(std::move(message));
+    if (last_tracks_ && (now - *last_tracks_).to_seconds() > parameters_.max_tracks_age_s) {
+      context_.count("tracks_missing");
+      context_.health(graph::HealthLevel::kWarn, "no tracks come: the targets are stale");
+      last_tracks_.reset();
+    }
   }
 
-  void take(const furrow_msgs::msg::Tracks& tracks) {
+  void take(const furrow_msgs::msg::Tracks& tracks, bool stale) {
     crops_.clear();
     left_standing_.clear();
     lost_.clear();
@@ -223,6 +246,9 @@ class PlannerComponent final : public graph::Component {
     for (const Track& track : tracks.tracks()) {
       if (!alive(track)) {
         forget(track.id());
+      } else if (stale && !is_crop(track)) {
+        // What an axis is already committed to goes on.
+        if (view_->remove(track.id())) unsound_.push_back(track.id());
       } else if (is_crop(track)) {
         view_->remove(track.id());
         count_if_bad(view_->update_protected(
@@ -352,10 +378,11 @@ class PlannerComponent final : public graph::Component {
   graph::Output<topics::Plan> out_;
   graph::Output<topics::PlannerHeartbeat> heartbeat_out_;
   std::uint64_t beats_ = 0;
+  std::optional<Time> last_tracks_;  ///< when tracks last came, until that is found too long ago
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::vector<planning::CropPhenotype> crops_;
   std::vector<std::int64_t> left_standing_;  ///< on purpose, by the newest tracks
-  std::vector<std::int64_t> unsound_;        ///< weeds whose numbers cannot be used
+  std::vector<std::int64_t> unsound_;        ///< weeds whose numbers cannot be used, or are too old
   std::vector<std::int64_t> lost_;           ///< targets whose track the tracker gave up
   std::vector<planning::TargetOutcome> outcomes_;
   std::uint64_t revision_ = 0;

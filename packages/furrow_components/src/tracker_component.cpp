@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,25 @@ namespace topics = msgs::topics;
 
 struct Parameters {
   std::string tool_file;
+  double max_wait_s = 0.5;
+  std::int64_t max_empty_views = 30;
   ObservationParameters observation;
   TrackFieldParameters field;
   tracking::TrackerParameters tracker;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
+    v.visit({.name = "max_wait_s",
+             .unit = "s",
+             .description = "an image that has no pose for so long is given up",
+             .min = 0.01,
+             .max = 10.0},
+            max_wait_s);
+    v.visit({.name = "max_empty_views",
+             .description = "images in a row without a plant from which on the health is degraded",
+             .min = 1,
+             .max = 1e6},
+            max_empty_views);
     observation.visit(v);
     field.visit(v);
     tracker.visit(v);
@@ -37,7 +51,9 @@ const geometry::CameraModel& first_camera(const geometry::ToolModel& tool) {
   return tool.cameras.front();
 }
 
-/// Keeps the plants of the images in the field frame.
+/// Keeps the plants of the images in the field frame. What it publishes bears the stamp of the
+/// newest view that could be used: after one that could not, those who act on the tracks are told
+/// how old they are.
 class TrackerComponent final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
@@ -62,17 +78,17 @@ class TrackerComponent final : public graph::Component {
         remember_covariance(*message);
       } else {
         context_.count("bad_odometry");
+        warn("odometry that is not finite or goes back in time");
       }
       work_off();
     });
     context.input<topics::Instances>([this](const auto& message) {
       waiting_.push_back(message);
-      if (waiting_.size() > kMaxWaiting) {
-        waiting_.pop_front();
-        context_.count("images_without_pose");
-      }
+      if (waiting_.size() > kMaxWaiting) give_up_oldest("images wait for odometry");
       work_off();
     });
+    context.every(Duration::seconds(0.5 * parameters_.max_wait_s),
+                  [this](Time now) { give_up_waiting(now); });
     context.input<topics::RunStatus>([this](const auto& status) {
       if (status->finished() && !parameters_.field.field_model_file.empty()) save_field();
     });
@@ -82,6 +98,23 @@ class TrackerComponent final : public graph::Component {
   static constexpr std::size_t kMaxWaiting = 8;
   static constexpr std::size_t kMaxCovariances = 512;
   static constexpr std::size_t kMaxEnded = 1'000'000;
+
+  void warn(const std::string& what) { context_.health(graph::HealthLevel::kWarn, what); }
+
+  void give_up_oldest(const std::string& why) {
+    waiting_.pop_front();
+    context_.count("images_without_pose");
+    warn(why);
+    publish();
+  }
+
+  void give_up_waiting(Time now) {
+    const Duration longest = Duration::seconds(parameters_.max_wait_s);
+    while (!waiting_.empty() &&
+           now - graph::from_msg(waiting_.front()->header().stamp()) > longest) {
+      give_up_oldest("images wait for odometry");
+    }
+  }
 
   void remember_covariance(const nav_msgs::msg::Odometry& message) {
     covariances_.emplace_back(graph::from_msg(message.header().stamp()),
@@ -102,13 +135,12 @@ class TrackerComponent final : public graph::Component {
       const Time stamp = graph::from_msg(waiting_.front()->header().stamp());
       if (stamp > poses_.newest().stamp) return;
       const auto message = waiting_.front();
-      waiting_.pop_front();
       const auto pose = poses_.at(stamp);
       if (!pose.ok()) {
-        context_.count("images_without_pose");
-        context_.health(graph::HealthLevel::kWarn, pose.error().message);
+        give_up_oldest(pose.error().message);
         continue;
       }
+      waiting_.pop_front();
       update(*message, *pose);
     }
   }
@@ -134,11 +166,25 @@ class TrackerComponent final : public graph::Component {
     context_.count("born", summary.born);
     context_.count("confirmed", summary.confirmed);
     context_.count("dropped", summary.dropped);
-    if (!summary.ok()) context_.count("bad_views");
-    context_.health(summary.ok() ? graph::HealthLevel::kOk : graph::HealthLevel::kWarn,
-                    summary.ok() ? "" : "a view or an observation was not valid");
+    if (summary.fault == tracking::ViewFault::kNone) {
+      newest_used_ = pose.stamp;
+      empty_views_ = summary.empty_view ? empty_views_ + 1 : 0;
+      if (summary.empty_view) context_.count("empty_views");
+    }
+    report(summary);
     if (!parameters_.field.field_model_file.empty()) keep_ended();
-    publish(pose.stamp);
+    publish();
+  }
+
+  void report(const tracking::UpdateSummary& summary) {
+    if (!summary.ok()) {
+      context_.count("bad_views");
+      warn("a view or an observation was not valid");
+    } else if (empty_views_ >= parameters_.max_empty_views) {
+      warn("no plant in " + std::to_string(empty_views_) + " images");
+    } else {
+      context_.health(graph::HealthLevel::kOk, "");
+    }
   }
 
   void keep_ended() {
@@ -171,9 +217,10 @@ class TrackerComponent final : public graph::Component {
     observation.species_probability[static_cast<std::size_t>(name - species_names_.begin())] = 1.0F;
   }
 
-  void publish(Time stamp) const {
+  void publish() const {
+    if (!newest_used_) return;
     furrow_msgs::msg::Tracks message;
-    message.header(header(stamp, kFieldFrame));
+    message.header(header(*newest_used_, kFieldFrame));
     for (const tracking::Track& track : tracker_.tracks()) {
       message.tracks().push_back(to_msg(track));
     }
@@ -215,6 +262,8 @@ class TrackerComponent final : public graph::Component {
   tracking::Tracker tracker_;
   graph::Output<topics::Tracks> out_;
   PoseBuffer poses_{Duration::seconds(5.0)};
+  std::optional<Time> newest_used_;  ///< stamp of the newest view that was used
+  std::int64_t empty_views_ = 0;     ///< in a row
   std::deque<std::shared_ptr<const furrow_msgs::msg::PlantInstances>> waiting_;
   std::deque<std::pair<Time, Eigen::Matrix3d>> covariances_;
   std::vector<tracking::Track> ended_;  ///< for the field model, when one is asked for
