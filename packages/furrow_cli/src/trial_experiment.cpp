@@ -30,13 +30,14 @@ std::string name_of(const TrialRegion& region) {
   return std::string(region.crop ? "crop_weed_" : "weed_only_") + region.field;
 }
 
-std::filesystem::path write_field(const TrialExperiment& experiment, const TrialRegion& region) {
+std::filesystem::path write_field(const TrialExperiment& experiment, const TrialRegion& region,
+                                  std::uint64_t seed) {
   auto parameters =
       graph::load_parameter_file<field::FieldParameters>(find_shipped(region.field, "fields"));
   parameters.crop = region.crop;
   parameters.length_m = experiment.length_m;
   const auto species = components::load_species(share_folder() / "params" / "species.yaml");
-  const auto field = value_or_throw(field::generate_field(parameters, species, experiment.seed));
+  const auto field = value_or_throw(field::generate_field(parameters, species, seed));
   const auto file =
       std::filesystem::absolute(experiment.folder / "fields" / (name_of(region) + ".csv"));
   const Status written = write_file_atomically(file, value_or_throw(field::to_csv(field)));
@@ -45,9 +46,9 @@ std::filesystem::path write_field(const TrialExperiment& experiment, const Trial
 }
 
 TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& region,
-                         const std::function<void(double)>& progress) {
+                         std::uint64_t seed, const std::function<void(double)>& progress) {
   std::vector<std::string> settings = {
-      "common.field_file=" + write_field(experiment, region).string(),
+      "common.field_file=" + write_field(experiment, region, seed).string(),
       "common.length_m=" + std::to_string(experiment.length_m)};
   settings.insert(settings.end(), experiment.conditions.begin(), experiment.conditions.end());
   settings.insert(settings.end(), experiment.settings.begin(), experiment.settings.end());
@@ -60,7 +61,7 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   graph::Runtime runtime(prepared.spec, registry,
                          {.clock = graph::ClockMode::kLockstep,
                           .threads = experiment.threads,
-                          .seed = experiment.seed,
+                          .seed = seed,
                           .components = {},
                           .transport = nullptr});
   const graph::RunResult result = runtime.run();
@@ -70,7 +71,7 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   const auto field = components::from_msg(observer.record()->field());
   ledger::RunRecord record = components::from_msg(*observer.record(), prepared.axes);
   record.info.simulated = true;
-  record.info.seed = static_cast<std::int64_t>(experiment.seed);
+  record.info.seed = static_cast<std::int64_t>(seed);
   record.info.version = FURROW_VERSION;
   record.info.graph = prepared.spec.name;
   record.tables = health_tables(runtime.status(), false);
@@ -79,8 +80,8 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   if (const Status written = ledger::write_run_files(folder, ledger, record); !written.ok()) {
     throw std::runtime_error(written.error().message);
   }
-  return {region, field.length_m * field.width_m, name_of(region), ledger.summary,
-          map_svg(ledger, record)};
+  return {region,          seed,           field.length_m * field.width_m,
+          name_of(region), ledger.summary, map_svg(ledger, record)};
 }
 
 void add(TrialRow& row, const ledger::Summary& summary) {
@@ -111,9 +112,11 @@ TrialResult run(const TrialExperiment& experiment, const std::function<void(doub
   const auto parts = static_cast<double>(experiment.regions.size());
   for (std::size_t i = 0; i < experiment.regions.size(); ++i) {
     const auto done = static_cast<double>(i);
-    result.stretches.push_back(run_stretch(experiment, experiment.regions[i], [&](double share) {
-      progress((done + share) / parts);
-    }));
+    // The same seed would give all regions the same places of weeds and the same errors of sensors.
+    const std::uint64_t seed = experiment.seed * experiment.regions.size() + i;
+    result.stretches.push_back(
+        run_stretch(experiment, experiment.regions[i], seed,
+                    [&](double share) { progress((done + share) / parts); }));
     const TrialStretch& stretch = result.stretches.back();
     add(stretch.region.crop ? crop_weed : weed_only, stretch.summary);
     add(all, stretch.summary);

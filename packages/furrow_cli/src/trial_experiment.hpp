@@ -24,12 +24,12 @@ struct TrialExperiment {
                                       {"sb21_s1_like", false}, {"cn20_like", true},
                                       {"sb20_s1_like", true},  {"sb21_s1_like", true}};
   std::string graph = "weeding_rtk";
-  /// Wind on the spray and jitter of the valves, over the graph's parameters.
-  std::vector<std::string> conditions = {"robot.spray_delay_jitter_s=0.001",
-                                         "robot.spray_drift_x_mps=0.03",
-                                         "robot.spray_drift_y_mps=0.05"};
+  /// Wind on the spray and on the leaves and jitter of the valves, over the graph's parameters.
+  std::vector<std::string> conditions = {
+      "robot.spray_delay_jitter_s=0.001", "robot.spray_drift_x_mps=0.03",
+      "robot.spray_drift_y_mps=0.05", "camera.render_leaf_sway_m=0.003"};
   double length_m = 12.0;  ///< of each region
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< each region draws from a seed of its own, which follows from it
   int threads = 2;
   std::vector<std::string> settings;           ///< over the conditions
   std::filesystem::path folder = "out/trial";  ///< of the fields and of the regions' reports
@@ -51,6 +51,7 @@ struct TrialRow {
 
 struct TrialStretch {
   TrialRegion region;
+  std::uint64_t seed = 0;
   double area_m2 = 0.0;
   std::string report;  ///< folder of its report
   ledger::Summary summary;

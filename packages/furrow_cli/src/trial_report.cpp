@@ -1,3 +1,4 @@
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "furrow_ledger/chart.hpp"
@@ -42,6 +43,7 @@ Json stretch_json(const TrialStretch& stretch) {
   const ledger::Summary& s = stretch.summary;
   return {{"region", stretch.region.crop ? "crop_weed" : "weed_only"},
           {"field", stretch.region.field},
+          {"seed", stretch.seed},
           {"area_m2", stretch.area_m2},
           {"weeds_total", s.weeds_total},
           {"accurate", s.treated_accurate},
@@ -91,6 +93,38 @@ ledger::ReportTable stretch_table(const TrialResult& result) {
                           causes});
   }
   return table;
+}
+
+/// What the trial is to reach, what it reached, and of what the rest consists.
+ledger::ReportTable goal_table(const TrialResult& result) {
+  std::array<std::int64_t, ledger::kReasonCount> missed{};
+  for (const TrialStretch& stretch : result.stretches) {
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      missed[i] += stretch.summary.missed_by_reason[i];
+    }
+  }
+  const TrialRow& all = result.rows.back();
+  const auto causes = [&](const auto& counts) {
+    std::string text;
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      const auto reason = static_cast<ledger::Reason>(i);
+      if (missed[i] == 0 || !counts(reason)) continue;
+      text += (text.empty() ? "" : ", ") + std::string(to_string(reason)) + " " +
+              percent(missed[i], all.weeds_total);
+    }
+    return text;
+  };
+  const std::int64_t treated = all.accurate + all.partial;
+  return {
+      "",
+      {"", "goal", "reached", "paper", "made up of"},
+      {{"weeds missed", "at most 10 %", percent(all.missed, all.weeds_total), "26.3 %", ""},
+       {"by vision", "", percent(all.missed_vision, all.weeds_total), "14.6 %",
+        causes([](ledger::Reason reason) { return ledger::is_vision_loss(reason); })},
+       {"by planning", "at most 2 %", percent(all.missed_planning, all.weeds_total), "11.7 %",
+        causes([](ledger::Reason reason) { return !ledger::is_vision_loss(reason); })},
+       {"accurate, of the treated", "at least 85 %", percent(all.accurate, treated), "47 %", ""},
+       {"crops hit", "at most 1 %", percent(all.crops_hit, all.crops_total), "4 %", ""}}};
 }
 
 std::string loss_chart(const TrialResult& result) {
@@ -147,9 +181,9 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
   page.section("What was done",
                "Rendered images through detector, tracker, fused localization, planner, axes and "
                "nozzles, with slipping wheels, an RTK receiver with outages, wind on the spray and "
-               "jitter of the valves. The fields are generated at the densities of the paper's "
-               "data sets; they are not its fields, and everything of ours here is simulated. "
-               "Leaves do not move in this simulation.");
+               "on the leaves, and jitter of the valves. The fields are generated at the densities "
+               "of the paper's data sets; they are not its fields, and everything of ours here is "
+               "simulated. Each region has a seed of its own.");
   page.facts({{"area", fixed(area_m2, 1) + " m2"},
               {"graph", experiment.graph},
               {"seed", std::to_string(experiment.seed)},
@@ -157,6 +191,7 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
   page.section("The paper's third table beside ours",
                "Accurate: the stem within 10 mm of a spray's centre; partial: within 25 mm.");
   page.table(paper_table(result));
+  page.table(goal_table(result));
   page.figures({loss_chart(result), cause_chart(result)});
   page.section("Stretch by stretch",
                "Causes from the ledger; each stretch has a report of its own beside this one.");

@@ -79,6 +79,13 @@ void PlantParameters::visit(ParameterVisitor& v) {
   v.visit(
       {.name = "plant_height_scale", .description = "upright against flat", .min = 0.1, .max = 2.0},
       plant_height_scale);
+  v.visit({.name = "leaf_sway_m",
+           .unit = "m",
+           .description = "standard deviation of the wind's sway at 50 mm above the ground, in "
+                          "each direction, anew in each frame; stems stay, shadows too",
+           .min = 0.0,
+           .max = 0.1},
+          leaf_sway_m);
 }
 
 double max_mesh_radius_m(const field::Plant& plant) {

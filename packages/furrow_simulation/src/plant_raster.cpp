@@ -14,14 +14,16 @@ enum Attribute { kInverseDepth, kBlue, kGreen, kRed, kShade, kAlong, kAcross };
 }  // namespace
 
 std::optional<PlacedPlant> place_plant(const View& view, const BuiltPlant& plant,
-                                       std::size_t plant_index) {
+                                       std::size_t plant_index, const Eigen::Vector2f& sway_F) {
   const auto& camera = view.intrinsics();
   PlacedPlant placed;
   placed.plant_index = plant_index;
   placed.built = &plant;
   const Eigen::Vector3d p_CP = view.pose_inverse() * plant.p_F.cast<double>();
   const Eigen::Vector3f origin = p_CP.cast<float>();
-  const Eigen::Matrix3f R_CF = view.pose_inverse().linear().cast<float>();
+  // Sheared along the ground, so that stems stay where they are.
+  Eigen::Matrix3f R_CF = view.pose_inverse().linear().cast<float>();
+  R_CF.col(2) += R_CF.leftCols<2>() * sway_F;
   const auto fx = static_cast<float>(camera.fx_px);
   const auto fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px);

@@ -29,9 +29,11 @@ struct PlacedPlant {
   std::int64_t visible_px = 0;
 };
 
-/// Nothing when no part of the plant can be in the image.
+/// Nothing when no part of the plant can be in the image. `sway_F` is how far a leaf is blown aside
+/// for each metre above the ground.
 [[nodiscard]] std::optional<PlacedPlant> place_plant(const View& view, const BuiltPlant& plant,
-                                                     std::size_t plant_index);
+                                                     std::size_t plant_index,
+                                                     const Eigen::Vector2f& sway_F);
 
 /// Draws rows [first_row, end_row): colours, inverse depths into frame.depth_m, and `local_index`
 /// into frame.plant_index, where the plant is nearer than what is there.

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "check.hpp"
+#include "furrow_core/random.hpp"
 #include "ground_atlas.hpp"
 #include "parallel.hpp"
 #include "plant_cache.hpp"
@@ -74,7 +75,8 @@ class Renderer::Implementation {
         atlas_(ground_),
         plants_(field_, species_, parameters_.plants, light_, ground_, seed),
         texture_(seed, parameters.plants.leaf_damage),
-        effects_(parameters.camera, seed) {}
+        effects_(parameters.camera, seed),
+        seed_(seed) {}
 
   [[nodiscard]] const field::FieldModel& field() const { return field_; }
   [[nodiscard]] const Ground& ground() const { return ground_; }
@@ -114,7 +116,7 @@ class Renderer::Implementation {
             gather_casters(x, y, casters);
           },
           threads);
-      placed = place_plants(view, window);
+      placed = place_plants(view, window, frame_index);
     }
 
     std::mutex merging;
@@ -174,7 +176,19 @@ class Renderer::Implementation {
     }
   }
 
-  std::vector<PlacedPlant> place_plants(const View& view, const GroundAtlas::Window& window) {
+  // Leaves swing faster than frames follow each other: each frame finds them anywhere.
+  [[nodiscard]] Eigen::Vector2f sway(std::size_t plant_index, std::uint64_t frame_index) const {
+    constexpr double kAt_m = 0.05;
+    if (parameters_.plants.leaf_sway_m <= 0.0) return Eigen::Vector2f::Zero();
+    const auto id = static_cast<std::uint64_t>(field_.plants[plant_index].id);
+    Random random(Random(seed_, "leaf_sway", id).next(), "frame", frame_index);
+    const double along = random.normal(0.0, parameters_.plants.leaf_sway_m / kAt_m);
+    const double across = random.normal(0.0, parameters_.plants.leaf_sway_m / kAt_m);
+    return Eigen::Vector2d(along, across).cast<float>();
+  }
+
+  std::vector<PlacedPlant> place_plants(const View& view, const GroundAtlas::Window& window,
+                                        std::uint64_t frame_index) {
     const double texel = ground_.texel_m();
     // A leaf near the camera's height is seen far from its place on the ground.
     const auto found = plants_.find(window.first_x * texel, (window.last_x + 1) * texel,
@@ -182,7 +196,7 @@ class Renderer::Implementation {
                                     [](double radius_m) { return 2.5 * radius_m + 0.05; });
     std::vector<PlacedPlant> placed;
     for (const std::size_t index : found) {
-      auto plant = place_plant(view, plants_.get(index), index);
+      auto plant = place_plant(view, plants_.get(index), index, sway(index, frame_index));
       if (plant) placed.push_back(std::move(*plant));
     }
     return placed;
@@ -319,6 +333,7 @@ class Renderer::Implementation {
   PlantCache plants_;
   const LeafTexture texture_;
   const CameraEffects effects_;
+  const std::uint64_t seed_;
   cv::Mat bgr_;
   cv::Mat depth_m_;
 };

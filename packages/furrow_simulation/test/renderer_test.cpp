@@ -156,6 +156,29 @@ TEST(Renderer, ThreadsDoNotChangeTheBytes) {
   EXPECT_TRUE(same_bytes(expected, five.render(camera, X_FC, 1)));
 }
 
+TEST(Renderer, WindMovesLeavesAndNoStem) {
+  RendererParameters windy = clean();
+  windy.plants.leaf_sway_m = 0.02;
+  Renderer still(field_of(some_plants()), clean(), 1);
+  Renderer moving(field_of(some_plants()), windy, 1);
+  const auto render = [](Renderer& renderer, std::uint64_t frame) {
+    return renderer.render(small_camera(), looking_down(1.0, 0.0, 1.0), frame);
+  };
+  const Frame calm = render(still, 0);
+  const Frame first = render(moving, 0);
+  const Frame second = render(moving, 1);
+  EXPECT_FALSE(same_bytes(calm.plant_index, first.plant_index));
+  EXPECT_FALSE(same_bytes(first.plant_index, second.plant_index));
+  EXPECT_TRUE(same_bytes(first, render(moving, 0))) << "one frame is one picture";
+  ASSERT_EQ(first.plants.size(), calm.plants.size());
+  for (std::size_t i = 0; i < calm.plants.size(); ++i) {
+    EXPECT_EQ(first.plants[i].stem_px, calm.plants[i].stem_px);
+    EXPECT_NEAR(static_cast<double>(first.plants[i].visible_px),
+                static_cast<double>(calm.plants[i].visible_px),
+                0.3 * static_cast<double>(calm.plants[i].visible_px));
+  }
+}
+
 TEST(Renderer, AnEmptyFieldIsBareGround) {
   Renderer renderer(field_of({}), clean(), 1);
   const Frame frame = renderer.render(small_camera(), looking_down(1.0, 0.0, 1.0), 0);

@@ -25,6 +25,7 @@ struct PlantParameters {
   double leaf_curl = 0.5;
   double leaf_damage = 0.1;
   double plant_height_scale = 1.0;
+  double leaf_sway_m = 0.0;
 
   void visit(ParameterVisitor& v);
 };
