@@ -32,6 +32,7 @@ void DedicatedThread::set_priority() {
     node_.set_thread("dedicated");
     return;
   }
+  touch_stack();
   const std::string refused = use_fifo_scheduling(priority);
   node_.set_thread(refused.empty() ? "dedicated, SCHED_FIFO " + std::to_string(priority)
                                    : "dedicated; SCHED_FIFO refused: " + refused);

@@ -6,7 +6,9 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 
@@ -42,7 +44,15 @@ std::string lock_memory() {
   // for each image stops every thread for milliseconds.
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
-  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? "" : std::strerror(errno);
+  return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? "" : std::strerror(errno);
+}
+
+void touch_stack() {
+  constexpr std::size_t kBytes = 256 * 1024;
+  constexpr std::size_t kPage = 4096;
+  std::array<char, kBytes> stack;
+  volatile char* const bytes = stack.data();
+  for (std::size_t i = 0; i < kBytes; i += kPage) bytes[i] = 0;
 }
 
 }  // namespace furrow::graph
