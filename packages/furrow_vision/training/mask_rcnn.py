@@ -128,8 +128,9 @@ class MaskRcnn(nn.Module):
         proposals, losses = self.proposals(ImageList(images, sizes), features, targets)
         return features, sizes, proposals, losses
 
-    def loss(self, images, targets, class_weights):
-        """`targets`: for each image boxes, labels, masks (float), stems. Sum of parts, and parts."""
+    def loss(self, images, targets, class_weights, crops):
+        """`targets`: for each image boxes, labels, masks (float), stems. Sum of parts, and parts. The
+        first `crops` classes are crops."""
         features, sizes, proposals, losses = self._propose(images, targets)
         samples = [self._sample(p, t) for p, t in zip(proposals, targets)]
         boxes = [s["boxes"] for s in samples]
@@ -147,8 +148,18 @@ class MaskRcnn(nn.Module):
                  "class": (sub * plant).sum() / count, "box": (off * plant).sum() / count,
                  "stem": (stem_off * plant).sum() / count,
                  "mask": self._mask_loss(features, sizes, samples)}
-        weights = {"plant": 2.0, "box": 0.5, "stem": 2.0}
+        if 0 < crops < sub_class.shape[1]:
+            odds = one_stage.crop_log_odds(sub_class, crops)
+            parts["kind"] = F.binary_cross_entropy_with_logits(odds, (labels < crops).float(), plant,
+                                                               reduction="sum") / count
+        weights = {"plant": 2.0, "class": 0.5, "box": 0.5, "stem": 2.0}
         return sum(weights.get(name, 1.0) * part for name, part in parts.items()), parts
+
+    def train_heads_only(self):
+        """What finds regions stays as it is, with its means and deviations."""
+        for part in (self.backbone, self.proposals):
+            part.requires_grad_(False)
+        self.backbone.eval()
 
     @torch.no_grad()
     def _sample(self, proposals, target):

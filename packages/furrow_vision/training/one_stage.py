@@ -89,6 +89,11 @@ def loss(output, share, classes, heat, offsets, class_weights, crops):
     return total, parts
 
 
+def crop_log_odds(logits, crops):
+    """Of the first `crops` classes together against the others; classes are the second dimension."""
+    return torch.logsumexp(logits[:, :crops], 1) - torch.logsumexp(logits[:, crops:], 1)
+
+
 def _dice(probability, share):
     return 1 - (2 * (probability * share).sum() + 1) / (probability.sum() + share.sum() + 1)
 
@@ -96,7 +101,7 @@ def _dice(probability, share):
 def _kind_loss(logits, probability, share, classes, crops):
     """Crop against weed: cross entropy of each cell of a plant, every one as dear as the other, and
     Dice of both masks, which weighs the rarer kind as much as the other."""
-    odds = torch.logsumexp(logits[:, :crops], 1) - torch.logsumexp(logits[:, crops:], 1)
+    odds = crop_log_odds(logits, crops)
     inside, crop = (classes >= 0).float(), ((classes >= 0) & (classes < crops)).float()
     entropy = F.binary_cross_entropy_with_logits(odds, crop, inside, reduction="sum") \
         / inside.sum().clamp(min=1)

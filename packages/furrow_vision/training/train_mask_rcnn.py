@@ -23,7 +23,7 @@ import training_run
 from training_run import to_tensor
 
 LEAST_VISIBLE_PX = 12
-LOSSES = ["objectness", "proposal", "plant", "class", "box", "stem", "mask"]
+LOSSES = ["objectness", "proposal", "plant", "class", "box", "stem", "mask", "kind"]
 SCORES = ["precision", "recall", "class_right"]
 
 
@@ -94,12 +94,12 @@ def write_part(module, example, file, inputs, outputs, axes):
             f"{file.stem[len('mask_rcnn_'):]}_sha256: {hashlib.sha256(content).hexdigest()}"]
 
 
-def export(model, classes, out, resolution_mm_per_px, crop_log_odds):
+def export(model, classes, out, resolution_mm_per_px):
     levels, channels = range(len(mask_rcnn.STRIDES)), mask_rcnn.CHANNELS
     names = [f"{kind}_{i}" for kind in ("features", "objectness", "deltas") for i in levels]
     lines = ["# Written by train_mask_rcnn.py beside the networks.", "kind: mask_rcnn",
              "name: mask_rcnn", f"ground_resolution_mm_per_px: {resolution_mm_per_px}",
-             f"crop_log_odds: {crop_log_odds:.2f}", f"feature_levels: {len(levels)}", "stems: true",
+             f"feature_levels: {len(levels)}", "stems: true",
              f"anchors: {{sizes_px: {list(mask_rcnn.ANCHOR_SIZES)}, "
              f"strides_px: {list(mask_rcnn.STRIDES)}, aspect_ratios: {list(mask_rcnn.ASPECT_RATIOS)}}}"]
     lines += write_part(mask_rcnn.ExportedBackbone(model), torch.zeros(1, 3, 480, 640),
@@ -140,6 +140,7 @@ def start_from(model, arguments, classes):
 def main():
     parser = training_run.parser(__doc__.split("\n")[0], batch=4, size=320, rate=1e-3)
     parser.add_argument("--backbone", type=pathlib.Path, help="one_stage.pt whose backbone is taken")
+    parser.add_argument("--heads-only", action="store_true", help="leave backbone and proposals alone")
     arguments = parser.parse_args()
     device = training_run.prepare(arguments)
     train, validation, crops = training_run.load_sets(arguments)
@@ -149,19 +150,25 @@ def main():
     weights = training_run.class_weights(train).to(device)
     samples = training_run.Samples(train, arguments.size, arguments.seed, make_sample)
     loader = training_run.loader(samples, arguments, collate)
-    optimizer = torch.optim.AdamW(model.parameters(), lr=arguments.rate, weight_decay=1e-4)
+    if arguments.heads_only:
+        model.train_heads_only()
+    learning = [weight for weight in model.parameters() if weight.requires_grad]
+    optimizer = torch.optim.AdamW(learning, lr=arguments.rate, weight_decay=1e-4)
     progress = training_run.Progress(arguments, len(loader))
-    log = training_run.Log(arguments.out, "mask_rcnn_", LOSSES, SCORES)
+    losses = LOSSES if 0 < crops < len(train.classes) else LOSSES[:-1]
+    log = training_run.Log(arguments.out, "mask_rcnn_", losses, SCORES)
     for epoch in range(arguments.epochs):
         samples.epoch = epoch
         sums, first = {}, progress.steps
+        if arguments.heads_only:
+            model.backbone.eval()
         for images, wanted in loader:
             progress.set_rate(optimizer)
             wanted = [{k: t.to(device) for k, t in w.items()} for w in wanted]
-            total, parts = model.loss(images.to(device), wanted, weights)
+            total, parts = model.loss(images.to(device), wanted, weights, crops)
             optimizer.zero_grad()
             total.backward()
-            torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)
+            torch.nn.utils.clip_grad_norm_(learning, 5.0)
             optimizer.step()
             progress.steps += 1
             for name, value in parts.items():
@@ -177,8 +184,7 @@ def main():
         torch.save({"model": model.state_dict(), "classes": train.classes}, arguments.out / "mask_rcnn.pt")
         if progress.done():
             break
-    export(model, train.classes, arguments.out, arguments.resolution,
-           training_run.crop_log_odds(weights.cpu(), crops))
+    export(model, train.classes, arguments.out, arguments.resolution)
 
 
 if __name__ == "__main__":

@@ -90,13 +90,6 @@ def class_weights(coco, limit=200):
     return torch.tensor(weights / weights.mean(), dtype=torch.float32)
 
 
-def crop_log_odds(weights, crops):
-    """What makes up for weights of classes in a cross entropy: log-odds of a crop that they took."""
-    if not 0 < crops < len(weights):
-        return 0.0
-    return float(torch.log(weights[crops:].mean() / weights[:crops].mean()))
-
-
 class Progress:
     """How far a training is, by its steps or by its time, whichever is nearer the end."""
 
