@@ -1,12 +1,12 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 
 #include "command.hpp"
 #include "console.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_vision/dataset_coco.hpp"
+#include "furrow_vision/image_file.hpp"
 #include "furrow_vision/overlay.hpp"
 #include "vision_options.hpp"
 
@@ -70,8 +70,8 @@ int detect(DetectOptions options) {
     cv::Mat picture = image.bgr.clone();
     vision::draw_instances(*plants, detector.classes(), true, picture);
     const fs::path file = output_name(options.out, image.path, i);
-    if (!cv::imwrite(file.string(), picture)) {
-      throw std::runtime_error(file.string() + ": cannot write the image");
+    if (const Status written = vision::write_image(file, picture); !written.ok()) {
+      throw std::runtime_error(written.error().message);
     }
     const auto crops = std::count_if(plants->begin(), plants->end(), [](const auto& plant) {
       return plant.crop_probability >= 0.5;

@@ -2,13 +2,13 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "command.hpp"
 #include "console.hpp"
 #include "furrow_core/file.hpp"
+#include "furrow_vision/image_file.hpp"
 #include "furrow_vision/overlay.hpp"
 #include "scratch_folder.hpp"
 #include "verb.hpp"
@@ -39,18 +39,22 @@ std::string picture_of(const vision::AnnotatedImage& image,
                        const std::vector<vision::Instance>& found,
                        const std::vector<vision::SubClass>& classes) {
   constexpr double kHeight_px = 420.0;
+  constexpr double kGap = 0.01;  // of the width
   cv::Mat left = image.bgr.clone(), right = image.bgr.clone(), both;
   vision::draw_annotations(image.instances, left);
   vision::draw_instances(found, classes, false, right);
-  cv::hconcat(left, right, both);
+  const int gap_px = std::max(1, static_cast<int>(kGap * left.cols));
+  cv::hconcat(
+      std::vector<cv::Mat>{left, cv::Mat(left.rows, gap_px, CV_8UC3, cv::Scalar::all(255)), right},
+      both);
   if (both.rows > kHeight_px) {
     const double scale = kHeight_px / both.rows;
     cv::resize(both, both, {}, scale, scale, cv::INTER_AREA);
   }
-  std::vector<std::uint8_t> bytes;
   constexpr int kQuality = 75;
-  cv::imencode(".jpg", both, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  return {bytes.begin(), bytes.end()};
+  const auto bytes = vision::encode_jpeg(both, kQuality);
+  if (!bytes.ok()) throw std::runtime_error(bytes.error().message);
+  return {bytes->begin(), bytes->end()};
 }
 
 /// Keeps the best and the worst pictures, and no more, as the images go by.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "furrow_graph/parameter_file.hpp"
+#include "furrow_vision/image_file.hpp"
 #include "furrow_vision/model_file.hpp"
 #include "share.hpp"
 
@@ -125,12 +125,9 @@ Result<LoadedImage> load_image(vision::AnnotatedImage& image, double resolution_
       .camera = geometry::PinholeCamera({image.bgr.cols, image.bgr.rows, focal_px, focal_px,
                                          0.5 * (image.bgr.cols - 1), 0.5 * (image.bgr.rows - 1)})};
   if (image.depth_path.empty()) return result;
-  cv::Mat depth;
-  try {
-    depth = cv::imread(image.depth_path.string(), cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    depth.release();
-  }
+  const auto read = vision::read_image(image.depth_path, vision::ImageChannels::kAsStored);
+  if (!read.ok()) return read.error();
+  const cv::Mat& depth = *read;
   if (depth.type() != CV_16UC1 || depth.size() != image.bgr.size()) {
     return Error{ErrorCode::kParse,
                  image.depth_path.string() + ": is not a 16-bit depth image of the picture's size"};

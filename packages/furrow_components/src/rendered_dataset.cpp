@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "furrow_geometry/camera.hpp"
 #include "furrow_simulation/renderer.hpp"
 #include "furrow_vision/dataset_coco.hpp"
+#include "furrow_vision/image_file.hpp"
 
 namespace furrow::components {
 namespace {
@@ -122,17 +122,6 @@ std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& fra
   return instances;
 }
 
-Status write_image(const std::filesystem::path& path, const cv::Mat& image) {
-  bool written = false;
-  try {
-    written = cv::imwrite(path.string(), image);
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written) return Error{ErrorCode::kIo, path.string() + ": cannot write the image"};
-  return {};
-}
-
 /// The frames of one sequence; the last one is labelled.
 Result<std::vector<vision::AnnotatedImage>> render_sequence(const RenderedDatasetParameters& p,
                                                             const field::SpeciesTable& species,
@@ -177,14 +166,14 @@ Result<std::vector<vision::AnnotatedImage>> render_sequence(const RenderedDatase
       if (!image.labelled) file += "_before_" + std::to_string(before);
     }
     image.path = folder / "images" / (file + ".png");
-    if (const Status written = write_image(image.path, frame.bgr); !written.ok()) {
+    if (const Status written = vision::write_image(image.path, frame.bgr); !written.ok()) {
       return written.error();
     }
     if (p.depth) {
       cv::Mat depth;
       frame.depth_m.convertTo(depth, CV_16U, 1e4);
       image.depth_path = folder / "depth" / (file + ".png");
-      if (const Status written = write_image(image.depth_path, depth); !written.ok()) {
+      if (const Status written = vision::write_image(image.depth_path, depth); !written.ok()) {
         return written.error();
       }
     }

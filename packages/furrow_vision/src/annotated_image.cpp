@@ -1,8 +1,7 @@
 #include "furrow_vision/annotated_image.hpp"
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "furrow_core/file.hpp"
+#include "furrow_vision/image_file.hpp"
 
 namespace furrow::vision {
 namespace {
@@ -19,17 +18,10 @@ bool is_truncated_jpeg(const std::filesystem::path& path) {
 
 Status load_pixels(AnnotatedImage& image) {
   const std::string file = image.path.string();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(image.path, ignored)) {
-    return Error{ErrorCode::kNotFound, file + ": no such image"};
-  }
-  cv::Mat bgr;
-  try {
-    bgr = cv::imread(file, cv::IMREAD_COLOR);
-  } catch (const cv::Exception&) {
-    bgr.release();
-  }
-  if (bgr.empty() || is_truncated_jpeg(image.path)) {
+  auto read = read_image(image.path, ImageChannels::kColour);
+  if (!read.ok()) return read.error();
+  cv::Mat bgr = std::move(read).value();
+  if (is_truncated_jpeg(image.path)) {
     return Error{ErrorCode::kParse, file + ": not an image, or a truncated one"};
   }
   if (image.width_px > 0 && bgr.size() != cv::Size(image.width_px, image.height_px)) {

@@ -1,8 +1,9 @@
 #include "dataset_common.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "furrow_vision/image_file.hpp"
 
 namespace furrow::vision {
 
@@ -15,20 +16,7 @@ bool cut_to_box(const cv::Mat& full_mask, AnnotatedInstance& instance) {
 }
 
 Result<cv::Mat> read_mask(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    return Error{ErrorCode::kNotFound, file.string() + ": no such mask"};
-  }
-  cv::Mat mask;
-  try {
-    mask = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-  } catch (const cv::Exception&) {
-    mask.release();
-  }
-  if (mask.empty()) {
-    return Error{ErrorCode::kParse, file.string() + ": not an image, or a truncated one"};
-  }
-  return mask;
+  return read_image(file, ImageChannels::kGrey);
 }
 
 Result<std::vector<std::filesystem::path>> list_files(const std::filesystem::path& folder,

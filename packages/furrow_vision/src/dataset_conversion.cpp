@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "check_ranges.hpp"
@@ -12,6 +11,7 @@
 #include "furrow_core/error.hpp"
 #include "furrow_core/random.hpp"
 #include "furrow_vision/dataset_coco.hpp"
+#include "furrow_vision/image_file.hpp"
 
 namespace furrow::vision {
 namespace {
@@ -46,17 +46,6 @@ cv::Mat scaled_mask(const cv::Mat& mask, cv::Size size) {
   cv::resize(mask, shares, size, 0.0, 0.0, cv::INTER_AREA);
   constexpr double kHalf = 127.5;
   return shares > kHalf;
-}
-
-Status write_png(const std::filesystem::path& path, const cv::Mat& image) {
-  bool written = false;
-  try {
-    written = cv::imwrite(path.string(), image);
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written) return Error{ErrorCode::kIo, path.string() + ": cannot write the image"};
-  return {};
 }
 
 /// COCO has no mask of vegetation: what no instance covers becomes a crowd region.
@@ -180,7 +169,7 @@ Status convert_dataset(const Dataset& dataset, const ConversionParameters& param
       image.path = folder / "images" /
                    (std::string(name) + "_" + std::to_string(done) + "_" +
                     image.path.stem().string() + ".png");
-      if (const Status written = write_png(image.path, image.bgr); !written.ok()) return written;
+      if (const Status written = write_image(image.path, image.bgr); !written.ok()) return written;
       image.bgr.release();
       image.vegetation.release();
       progress(++done);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "furrow_core/result.hpp"
+
+namespace furrow::vision {
+
+enum class ImageChannels { kGrey, kColour, kAsStored };
+
+// Through OpenCV's codecs, which are loaded with the first file: they bring more than a hundred
+// libraries with them, and a process that only moves an axis is to start without.
+
+/// 8-bit grey, 8-bit BGR, or what is in the file. Errors, with the file's name: kNotFound, and
+/// kParse for what is no image.
+[[nodiscard]] Result<cv::Mat> read_image(const std::filesystem::path& file, ImageChannels channels);
+/// The suffix tells the format. Errors: kIo.
+[[nodiscard]] Status write_image(const std::filesystem::path& file, const cv::Mat& image);
+/// Quality from 0 to 100. Errors: kIo.
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const cv::Mat& image, int quality);
+
+}  // namespace furrow::vision
