@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "furrow_graph/stamp.hpp"
+#include "furrow_tracking/pose_correction.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -57,6 +58,7 @@ class Replay {
     if (told[0] > 0.0) measurement.speed_variance = told[0];
     if (told[35] > 0.0) measurement.yaw_rate_variance = told[35];
     filter_.add(measurement);
+    follow(wheels.stamp);
     while (!waiting_.empty() && stamp_of(*waiting_.front()) <= wheels.stamp) {
       track(*waiting_.front());
       waiting_.pop_front();
@@ -74,6 +76,14 @@ class Replay {
     filter_.add(georeference_.from_msg(message));
   }
   void take(const furrow_msgs::msg::PlantInstances& message) { waiting_.push_back(&message); }
+
+  // The truth is not corrected.
+  void follow(Time stamp) {
+    if (options_.pose == PoseSource::kTruth) return;
+    if (const auto pose = filter_.predict(stamp); pose.ok()) {
+      (void)correction_.add(stamp, pose->X_FB, pose->speed_mps, pose->yaw_rate_radps);
+    }
+  }
 
   // All begin where the robot truly stands, as well as it is known of a row's start.
   void start(Time stamp) {
@@ -108,7 +118,10 @@ class Replay {
       return;
     }
     const Eigen::Isometry3d X_FC = geometry::to_isometry(pose->X_FB) * camera_model_.X_BC;
-    tracking::View view{.stamp = stamp, .X_FB = pose->X_FB, .pose_covariance = pose->covariance};
+    tracking::View view{.stamp = stamp,
+                        .X_FB = pose->X_FB,
+                        .pose_covariance = pose->covariance,
+                        .correction = correction_.pending()};
     if (auto visible = tracking::visible_ground(camera_, X_FC); visible.ok()) {
       view.visible = std::move(visible).value();
     }
@@ -117,7 +130,9 @@ class Replay {
       auto seen = components::observe(instance, camera_, X_FC, options_.observation);
       if (seen.ok()) observations.push_back(std::move(seen).value());
     }
-    tracker_.update(view, observations);
+    if (tracker_.update(view, observations).fault == tracking::ViewFault::kNone) {
+      correction_.clear();
+    }
     keep(tracker_.ended());
     compare(view, truth_at(stamp));
   }
@@ -190,6 +205,7 @@ class Replay {
   const ReplayOptions& options_;
   components::Georeference georeference_;
   localization::PoseFilter filter_;
+  tracking::PoseCorrection correction_;
   tracking::Tracker tracker_;
   tracking::TrackingEvaluation evaluation_;
   bool started_ = false;

@@ -12,6 +12,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_tracking/pose_correction.hpp"
 #include "furrow_tracking/tracker.hpp"
 
 namespace furrow::components {
@@ -74,8 +75,11 @@ class TrackerComponent final : public graph::Component {
         tracker_(parameters_.tracker),
         out_(context.output<topics::Tracks>()) {
     context.input<topics::RobotOdometry>([this](const auto& message) {
-      if (poses_.add(from_msg(*message)).ok()) {
+      const BaseOdometry odometry = from_msg(*message);
+      if (poses_.add(odometry).ok()) {
         remember_covariance(*message);
+        (void)correction_.add(odometry.stamp, odometry.X_FB, odometry.speed_mps,
+                              odometry.yaw_rate_radps);
       } else {
         context_.count("bad_odometry");
         warn("odometry that is not finite or goes back in time");
@@ -147,8 +151,10 @@ class TrackerComponent final : public graph::Component {
 
   void update(const furrow_msgs::msg::PlantInstances& message, const BaseOdometry& pose) {
     const Eigen::Isometry3d X_FC = geometry::to_isometry(pose.X_FB) * camera_model_.X_BC;
-    tracking::View view{
-        .stamp = pose.stamp, .X_FB = pose.X_FB, .pose_covariance = covariance_at(pose.stamp)};
+    tracking::View view{.stamp = pose.stamp,
+                        .X_FB = pose.X_FB,
+                        .pose_covariance = covariance_at(pose.stamp),
+                        .correction = correction_.pending()};
     if (auto visible = tracking::visible_ground(camera_, X_FC); visible.ok()) {
       view.visible = std::move(visible).value();
     }
@@ -168,6 +174,7 @@ class TrackerComponent final : public graph::Component {
     context_.count("dropped", summary.dropped);
     if (summary.fault == tracking::ViewFault::kNone) {
       newest_used_ = pose.stamp;
+      correction_.clear();
       empty_views_ = summary.empty_view ? empty_views_ + 1 : 0;
       if (summary.empty_view) context_.count("empty_views");
     }
@@ -262,6 +269,7 @@ class TrackerComponent final : public graph::Component {
   tracking::Tracker tracker_;
   graph::Output<topics::Tracks> out_;
   PoseBuffer poses_{Duration::seconds(5.0)};
+  tracking::PoseCorrection correction_;
   std::optional<Time> newest_used_;  ///< stamp of the newest view that was used
   std::int64_t empty_views_ = 0;     ///< in a row
   std::deque<std::shared_ptr<const furrow_msgs::msg::PlantInstances>> waiting_;

@@ -52,6 +52,7 @@ class Tracker::Impl {
  private:
   [[nodiscard]] ViewFault fault_of(const View& view) const;
   void prepare(const View& view, std::span<const Observation> observations, UpdateSummary& summary);
+  void follow_pose(const View& view);
   void fuse_matches(const View& view, UpdateSummary& summary);
   void begin_tracks(const View& view, UpdateSummary& summary);
   [[nodiscard]] bool repeats_a_plant(const PreparedObservation& observation) const;
@@ -85,9 +86,10 @@ class Tracker::Impl {
 
 ViewFault Tracker::Impl::fault_of(const View& view) const {
   if (started_ && view.stamp <= newest_) return ViewFault::kTimeNotNewer;
-  if (!std::isfinite(view.X_FB.x_m) || !std::isfinite(view.X_FB.y_m) ||
-      !std::isfinite(view.X_FB.heading_rad)) {
-    return ViewFault::kBadPose;
+  for (const geometry::Pose2& pose : {view.X_FB, view.correction}) {
+    if (!std::isfinite(pose.x_m) || !std::isfinite(pose.y_m) || !std::isfinite(pose.heading_rad)) {
+      return ViewFault::kBadPose;
+    }
   }
   return is_covariance(view.pose_covariance) ? ViewFault::kNone : ViewFault::kBadCovariance;
 }
@@ -144,6 +146,7 @@ UpdateSummary Tracker::Impl::update(const View& view, std::span<const Observatio
   started_ = true;
   newest_ = view.stamp;
 
+  if (parameters_.follow_pose) follow_pose(view);
   prepare(view, observations, summary);
   summary.empty_view = prepared_.empty();
   const auto matches = association_.match(view.stamp, prepared_, tracks_);
@@ -164,6 +167,15 @@ UpdateSummary Tracker::Impl::update(const View& view, std::span<const Observatio
   }
   take_out_ended();
   return summary;
+}
+
+void Tracker::Impl::follow_pose(const View& view) {
+  const Eigen::Vector2d p_FB(view.X_FB.x_m, view.X_FB.y_m);
+  const Eigen::Vector2d ahead_F(std::cos(view.X_FB.heading_rad), std::sin(view.X_FB.heading_rad));
+  for (Track& track : tracks_) {
+    if (ahead_F.dot(track.p_F_m - p_FB) < -parameters_.follow_behind_m) continue;
+    track.p_F_m = geometry::transform(view.correction, track.p_F_m);
+  }
 }
 
 void Tracker::Impl::fuse_matches(const View& view, UpdateSummary& summary) {

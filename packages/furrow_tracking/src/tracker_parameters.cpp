@@ -155,6 +155,16 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 1.0,
            .max = 1000.0},
           size_memory_views);
+  v.visit({.name = "follow_pose",
+           .description = "whether tracks go along when the pose is corrected, as by GNSS after "
+                          "an outage"},
+          follow_pose);
+  v.visit({.name = "follow_behind_m",
+           .unit = "m",
+           .description = "how far behind the robot's base tracks do so no longer",
+           .min = -100.0,
+           .max = 100.0},
+          follow_behind_m);
   rows.visit(v);
 }
 

@@ -40,6 +40,8 @@ struct View {
   /// Of (x_m, y_m, heading_rad) of X_FB, in F.
   Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Zero();
   GroundRegion visible = {};  ///< where a plant should be seen now
+  /// How the pose was corrected since the view before, as a motion of points in F (PoseCorrection).
+  geometry::Pose2 correction = {};
 };
 
 }  // namespace furrow::tracking

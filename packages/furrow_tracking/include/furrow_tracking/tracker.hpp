@@ -43,6 +43,8 @@ struct TrackerParameters {
   double class_truncated_weight = 1.0;
   double class_max_log_odds = 8.0;
   double size_memory_views = 10.0;
+  bool follow_pose = true;
+  double follow_behind_m = 0.5;
   RowPriorParameters rows;
 
   void visit(ParameterVisitor& v);
@@ -84,6 +86,10 @@ struct UpdateSummary {
 /// are taken as independent from view to view, up to `max_pose_sigma_m`: what is beyond is drift,
 /// common to views that follow each other, and moves all plants alike. `position_floor_m` bounds
 /// what averaging may claim.
+///
+/// With `follow_pose` tracks go along with the corrections of the pose (View::correction) until the
+/// robot has passed them by `follow_behind_m`: a tool then finds a plant that was seen by an
+/// earlier pose. The footprints that masks are compared by stay where they were seen.
 ///
 /// Cost: about linear in the plants in view; buffers are reused. Not thread-safe.
 class Tracker {
