@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "cdr_type.hpp"
+#include "network_interfaces.hpp"
 #include "participant_qos.hpp"
 #include "shared_memory.hpp"
 
@@ -34,6 +35,9 @@ Participant::Participant(const DdsParameters& parameters) : parameters_(paramete
   const fdds::DomainParticipantQos qos = participant_qos(parameters);
   log_to_stderr();
   remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
+  if (std::ranges::find(parameters.transports, "udp") != parameters.transports.end()) {
+    wait_for_interfaces(parameters.interfaces, std::chrono::seconds(5));
+  }
   participant_ = fdds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &discovery_,
       fdds::StatusMask::none());
