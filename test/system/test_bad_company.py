@@ -15,7 +15,7 @@ from furrow_case import domain, furrow_program
 class BadCompanyTest(DeploymentCase):
     def test_late_joiners_and_garbage_on_the_ports_do_no_harm(self):
         # Long enough for a busy machine: everybody joins while it runs.
-        up = self.up("--length", 10)
+        up = self.up("--length", 8)
         up.wait_for("weeding 1")
         stop = threading.Event()
         flood = threading.Thread(target=self.throw_garbage, args=(stop,))
@@ -32,7 +32,7 @@ class BadCompanyTest(DeploymentCase):
         self.assert_complete(self.ledger())
 
     def test_a_subscriber_that_never_reads_holds_nobody_up(self):
-        up = self.up("--length", 6)
+        up = self.up("--length", 5)
         up.wait_for("weeding 1")
         for topic in ("localization/odometry", "axis/event", "planner/plan"):
             reader = subprocess.Popen(

@@ -10,7 +10,7 @@ from deployment_case import STOP_WITHIN_S, DeploymentCase
 
 class DeathTest(DeploymentCase):
     def test_the_row_goes_on_whoever_is_killed(self):
-        length_m = 16  # a busy machine takes its time to start eight processes again
+        length_m = 12  # a busy machine takes its time to start eight processes again
         up = self.up("--length", length_m, "--resume")
         up.wait_for("weeding ")
         names = [name for name in up.children() if name not in ("robot", "scorer")]

@@ -12,7 +12,7 @@ from furrow_case import domain, furrow_program
 
 
 class SameOutcomeTest(DeploymentCase):
-    LENGTH_M = 2
+    LENGTH_M = 1
 
     def test_composed_distributed_and_from_a_recording_give_the_same_ledger(self):
         """The recording is made by the distributed run, and played in both deployments."""

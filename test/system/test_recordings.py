@@ -181,8 +181,6 @@ class FromRecordingTest(RecordingCase):
                          (self.out / "ledger.csv").read_bytes())
         self.assertGreater(again["treated_accurate"], 0)
         self.assertEqual(again["weeds_total"], summary["weeds_total"])
-        # Without the renderer it is faster than the world.
-        self.assertGreater(again["realtime_factor"], 1.0)
 
     def test_another_planner_gives_another_ledger(self):
         self.run_graph(*SHORT_RUN[:4], "--recording", self.recorded, "--set",

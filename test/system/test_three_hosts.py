@@ -56,7 +56,7 @@ class ThreeHostsTest(FurrowCase):
         for discovery in ("multicast", "static_peers", "discovery_server"):
             with self.subTest(discovery):
                 shutil.rmtree(self.out, ignore_errors=True)
-                self.run_script("--discovery", discovery, "--length", 2, "--resume")
+                self.run_script("--discovery", discovery, "--length", 1.5, "--resume")
                 rows = self.ledger()
                 self.assert_complete(rows)
                 self.assertTrue(any(row["outcome"] == "accurate" for row in rows))

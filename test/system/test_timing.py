@@ -1,4 +1,5 @@
-"""How evenly the loops of the axes run."""
+"""What is measured against the clock, on a machine that does nothing else: how evenly the loops of the
+axes run, and how fast a recording is worked through."""
 
 import html
 import os
@@ -70,6 +71,17 @@ class ControlLoopTest(FurrowCase):
         if not failures:
             self.skipTest("others kept the machine busy")
         self.fail("; ".join(failures))
+
+
+class PlaybackTest(FurrowCase):
+
+    def test_a_recording_is_worked_through_faster_than_the_world(self):
+        run = ["--seed", 3, "--length", 1, "--set", "camera.camera_rate_hz=2"]
+        self.run_graph(*run, "--record", "images", "--set",
+                       "recorder.exclude=[perception/*, tracker/*, planner/*, axis/*]")
+        again = self.run_graph("--seed", 3, "--recording", "images_0.mcap",
+                               out=self.folder / "again")
+        self.assertGreater(again["realtime_factor"], 1.0)
 
 
 if __name__ == "__main__":
