@@ -30,14 +30,12 @@ constexpr char kRawTopic[] = "bench/raw";
 /// A reader finds its writer a little later than the writer finds it; what is sent between is lost.
 constexpr milliseconds kSettle{1500};
 
+/// All sizes at one rate: after a longer pause a processor takes longer to wake.
 LatencyLoad load_of(std::size_t bytes, double scale) {
-  LatencyLoad load;
-  load.bytes = bytes;
-  const bool small = bytes <= 10'000;
-  const bool large = bytes > 2'000'000;
-  load.period = Duration::milliseconds(small ? 4 : large ? 50 : 15);
-  load.messages = std::max(30, static_cast<int>(scale * (small ? 1500 : large ? 200 : 500)));
-  return load;
+  constexpr int kMessages = 500;
+  return {.bytes = bytes,
+          .period = Duration::milliseconds(20),
+          .messages = std::max(30, static_cast<int>(scale * kMessages))};
 }
 
 GraphBenchmarkRow row(const std::string& path, const LatencyLoad& load,
