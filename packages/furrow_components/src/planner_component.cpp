@@ -25,6 +25,7 @@ struct Parameters {
   std::string tool_file;
   std::string species_file;
   double crop_threshold = 0.5;
+  bool treat_unconfirmed = false;
   double max_pose_age_s = 0.2;
   double max_tracks_age_s = 2.0;
   double heartbeat_rate_hz = 50.0;
@@ -41,6 +42,10 @@ struct Parameters {
              .min = 0.0,
              .max = 1.0},
             crop_threshold);
+    v.visit({.name = "treat_unconfirmed",
+             .description = "whether weeds count that were seen too few times to be believed: a "
+                            "spray on nothing against a weed that stays"},
+            treat_unconfirmed);
     v.visit({.name = "max_pose_age_s",
              .unit = "s",
              .description = "without newer odometry nothing is planned",
@@ -260,9 +265,9 @@ class PlannerComponent final : public graph::Component {
     }
   }
 
-  static bool alive(const Track& track) {
+  [[nodiscard]] bool alive(const Track& track) const {
     constexpr std::uint8_t kEnded = 3;
-    return track.confirmed() && track.state() != kEnded;
+    return (track.confirmed() || parameters_.treat_unconfirmed) && track.state() != kEnded;
   }
   [[nodiscard]] bool is_crop(const Track& track) const {
     return track.crop_probability() >= parameters_.crop_threshold;

@@ -231,6 +231,21 @@ TEST(PlannerComponent, TracksThatCannotBeUsedHarmNoOther) {
   EXPECT_EQ(treats, 1U) << "given twice, treated once";
 }
 
+TEST(PlannerComponent, TreatsWeedsThatAreNotConfirmedWhereThatIsAskedFor) {
+  for (const bool asked : {false, true}) {
+    World world;
+    world.tracks = {weed(1, 0.9, 0.0), weed(2, 1.0, 0.3)};
+    world.tracks[1].confirmed(false);
+    run(world, {{"treat_unconfirmed", asked}});
+    const auto decisions = world.decisions();
+    EXPECT_EQ(decisions.at(1).decision(), "treat");
+    EXPECT_EQ(decisions.contains(2), asked);
+    if (asked) {
+      EXPECT_EQ(decisions.at(2).decision(), "treat");
+    }
+  }
+}
+
 TEST(PlannerComponent, NothingInSightIsAnEmptyPlan) {
   World world;
   run(world);
