@@ -132,6 +132,22 @@ TEST(AxisController, ASprayWaitsForTheAxisToRestWhileItStillLandsNearEnough) {
   EXPECT_LT(late, 40);
 }
 
+TEST(AxisController, ASmallCorrectionShortBeforeASprayDoesNotMakeItLate) {
+  // The stop at 0.8 m is due after some 1.2 s; a movement of 0.5 mm takes 20 ms.
+  for (int cycles = 0; cycles < 30; ++cycles) {
+    Trip trip;
+    trip.plan = {stop_at(1, {0.8, 0.3}, {})};
+    trip.run(1.16 + 0.002 * cycles);
+    if (trip.count(ControllerEventKind::kSprayOpened) > 0) break;
+    trip.plan = {stop_at(1, {0.8, 0.3005}, {})};
+    trip.run(0.3);
+    EXPECT_EQ(trip.count(ControllerEventKind::kStopSkipped), 0) << cycles;
+    ASSERT_EQ(trip.rig.landed().size(), 1u) << cycles;
+    EXPECT_LT((trip.rig.landed()[0].p_F - Eigen::Vector2d(0.8, 0.3005)).norm(), 0.009) << cycles;
+    ASSERT_LT(cycles, 29) << "the spray never came due";
+  }
+}
+
 TEST(AxisController, SkipsForEachReason) {
   {
     Trip trip;
