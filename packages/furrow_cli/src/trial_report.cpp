@@ -191,11 +191,17 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
   page.section("The paper's third table beside ours",
                "Accurate: the stem within 10 mm of a spray's centre; partial: within 25 mm.");
   page.table(paper_table(result));
+  page.section("What it is to reach",
+               "Weeds missed, by what the ledger calls the cause: undetected, unconfirmed and "
+               "misclassified are vision's, all else is planning's, the placement of sprays "
+               "included. Unreachable: no axis had the time.");
   page.table(goal_table(result));
+  page.section("In pictures", "");
   page.figures({loss_chart(result), cause_chart(result)});
   page.section("Stretch by stretch",
                "Causes from the ledger; each stretch has a report of its own beside this one.");
   page.table(stretch_table(result));
+  page.section("Footprints over the field", "Paths of the axes, and where sprays landed.");
   for (const TrialStretch& stretch : result.stretches) {
     page.figure(stretch.map_svg, stretch.report);
   }
