@@ -184,7 +184,7 @@ class FromRecordingTest(RecordingCase):
 
     def test_another_planner_gives_another_ledger(self):
         self.run_graph(*SHORT_RUN[:4], "--recording", self.recorded, "--set",
-                       "tracker.confirm_matches=20")
+                       "planner.protection_zone_mm=60")
         self.assertNotEqual((self.out / "ledger.csv").read_bytes(),
                             (self.first_out / "ledger.csv").read_bytes())
 
