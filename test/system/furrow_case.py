@@ -69,6 +69,15 @@ class FurrowCase(unittest.TestCase):
         with open((out or self.out) / "ledger.csv", newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
+    def bag_info(self, file):
+        """What `bag info` says of a file, by topic."""
+        table = self.folder / "info.json"
+        done = self.furrow("bag", "info", file, "--json", table)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        row = json.loads(table.read_text())["rows"][0]
+        row["counts"] = {topic["topic"]: topic["messages"] for topic in row["topics"]}
+        return row
+
     def assert_refused(self, arguments, *parts):
         """Exit code 2, a message with all parts, and nothing left where the report was to be."""
         done = self.furrow(*arguments)

@@ -35,7 +35,7 @@ class SameOutcomeTest(DeploymentCase):
                                  (self.folder / "composed" / name).read_bytes(), (other, name))
 
     def test_a_death_ends_a_run_in_lock_step(self):
-        up = self.up("--clock", "lockstep", "--length", 20)
+        up = self.up("--clock", "lockstep", *self.SLOWER, "--length", 5)
         up.wait_for("weeding 1")
         os.kill(up.children()["tracker"], signal.SIGKILL)
         up.wait_for("tracker.*signal 9; the run cannot go on without it")
