@@ -1,9 +1,11 @@
 #include "field_markers.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <utility>
 
+#include "furrow_components/conversions.hpp"
 #include "furrow_ledger/palette.hpp"
 
 namespace furrow::components {
@@ -80,7 +82,7 @@ MarkerArray FieldMarkers::plants(const furrow_msgs::msg::Tracks& message) {
   MarkerArray result;
   std::set<std::int32_t> drawn;
   for (const Track& track : message.tracks()) {
-    if (track.state() == 3) continue;
+    if (track.state() == kTrackEnded) continue;
     const std::int32_t id = marker_id(track.id());
     Marker disc = marker(message.header(), "plants", id, kCylinder);
     make_disc(disc, track.position(), std::max(track.radius_m(), kSmallestPlant_m), kPlantHeight_m);
@@ -103,6 +105,7 @@ ColorRGBA FieldMarkers::plant_color(const Track& track) const {
   if (track.crop_probability() > 0.5) return color(ledger::palette::kCrop, alpha);
   const auto decided = decisions_.find(track.id());
   if (decided == decisions_.end()) return color(ledger::palette::kTreated, alpha);
+  // What is to be treated stands out, in the colour that the map has for what was missed.
   if (decided->second == "treat") return color(ledger::palette::kMissed, alpha);
   return color(ledger::palette::kLeft, alpha);
 }

@@ -1,7 +1,7 @@
-#include <string>
 #include <utility>
 
 #include "field_markers.hpp"
+#include "furrow_components/tool_file.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_msgs/topics.hpp"
 
@@ -10,20 +10,12 @@ namespace {
 
 namespace topics = msgs::topics;
 
-struct Parameters {
-  std::string tool_file;
-
-  void visit(ParameterVisitor& v) {
-    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
-  }
-};
-
 /// Shows plants, plan and sprays to viewers of ROS 2.
 class Markers final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
     d.doc("Draws plants, plan and sprays for RViz.")
-        .parameters<Parameters>()
+        .parameters<ToolFileParameters>()
         .input<topics::Tracks>()
         .input<topics::Plan>(graph::Need::kOptional)
         .input<topics::AxisEvent>(graph::Need::kOptional)
@@ -31,7 +23,7 @@ class Markers final : public graph::Component {
   }
 
   explicit Markers(graph::Context& context)
-      : markers_(geometry::load_tool_model(context.parameters<Parameters>().tool_file)),
+      : markers_(geometry::load_tool_model(context.parameters<ToolFileParameters>().tool_file)),
         out_(context.output<topics::Markers>()) {
     context.input<topics::Tracks>(
         [this](const auto& message) { publish(markers_.plants(*message)); });

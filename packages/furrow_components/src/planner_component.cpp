@@ -266,8 +266,7 @@ class PlannerComponent final : public graph::Component {
   }
 
   [[nodiscard]] bool alive(const Track& track) const {
-    constexpr std::uint8_t kEnded = 3;
-    return (track.confirmed() || parameters_.treat_unconfirmed) && track.state() != kEnded;
+    return (track.confirmed() || parameters_.treat_unconfirmed) && track.state() != kTrackEnded;
   }
   [[nodiscard]] bool is_crop(const Track& track) const {
     return track.crop_probability() >= parameters_.crop_threshold;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/tool_file.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
@@ -14,14 +15,6 @@ namespace furrow::components {
 namespace {
 
 namespace topics = msgs::topics;
-
-struct Parameters {
-  std::string tool_file;
-
-  void visit(ParameterVisitor& v) {
-    v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
-  }
-};
 
 geometry_msgs::msg::TransformStamped camera_transform(const geometry::CameraModel& camera,
                                                       Time stamp) {
@@ -46,13 +39,13 @@ class RobotDescription final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
     d.doc("Publishes the URDF and where the camera stands, for viewers.")
-        .parameters<Parameters>()
+        .parameters<ToolFileParameters>()
         .output<topics::RobotDescription>()
         .output<topics::StaticTransforms>();
   }
 
   explicit RobotDescription(graph::Context& context) {
-    const auto parameters = context.parameters<Parameters>();
+    const auto parameters = context.parameters<ToolFileParameters>();
     const geometry::ToolModel tool = geometry::load_tool_model(parameters.tool_file);
     auto urdf = read_file(parameters.tool_file);
     if (!urdf.ok()) throw ConfigError(urdf.error().message);

@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "feeder.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -148,10 +149,7 @@ class Feeder final : public graph::Component {
 void run(World& world, const std::map<std::string, ParameterValue>& parameters = {}) {
   graph::Registry registry;
   registry.load_library(FURROW_AXIS_DRIVER_LIBRARY);
-  graph::ComponentClass type{.name = "feeder"};
-  Feeder::describe(type.description);
-  type.make = [&](graph::Context& context) { return std::make_unique<Feeder>(context, world); };
-  registry.add(std::move(type));
+  registry.add(feeder_class<Feeder>(world));
   graph::GraphSpec spec;
   spec.components = {{.name = "driver",
                       .group = "driver",

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "feeder.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -116,10 +117,7 @@ class Feeder final : public graph::Component {
 void run(World& world, const std::map<std::string, ParameterValue>& parameters = {}) {
   graph::Registry registry;
   registry.load_library(FURROW_PLANNER_LIBRARY);
-  graph::ComponentClass type{.name = "feeder"};
-  Feeder::describe(type.description);
-  type.make = [&](graph::Context& context) { return std::make_unique<Feeder>(context, world); };
-  registry.add(std::move(type));
+  registry.add(feeder_class<Feeder>(world));
   graph::GraphSpec spec;
   spec.components = {{.name = "planner",
                       .group = "planner",

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "feeder.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -172,12 +173,7 @@ Outcome repeat(Cause cause) {
   Outcome outcome;
   graph::Registry registry;
   registry.load_library(FURROW_AXIS_DRIVER_LIBRARY);
-  graph::ComponentClass type{.name = "feeder"};
-  Feeder::describe(type.description);
-  type.make = [&](graph::Context& context) {
-    return std::make_unique<Feeder>(context, cause, outcome);
-  };
-  registry.add(std::move(type));
+  registry.add(feeder_class<Feeder>(cause, outcome));
   graph::GraphSpec spec;
   spec.components = {{.name = "driver",
                       .group = "driver",

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "feeder.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -118,10 +119,7 @@ void run(World& world) {
   graph::Registry registry;
   registry.load_library(FURROW_TRACKER_LIBRARY);
   registry.load_library(FURROW_PLANNER_LIBRARY);
-  graph::ComponentClass type{.name = "feeder"};
-  Feeder::describe(type.description);
-  type.make = [&](graph::Context& context) { return std::make_unique<Feeder>(context, world); };
-  registry.add(std::move(type));
+  registry.add(feeder_class<Feeder>(world));
   graph::GraphSpec spec;
   for (const std::string name : {"tracker", "planner"}) {
     spec.components.push_back({.name = name,

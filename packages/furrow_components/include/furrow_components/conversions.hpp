@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,9 @@ namespace furrow::components {
 inline constexpr char kFieldFrame[] = "field";
 inline constexpr char kBaseFrame[] = "base_link";
 inline constexpr char kCameraFrame[] = "camera_optical";
+
+/// The state of a Track message that is told for the last time.
+inline constexpr std::uint8_t kTrackEnded = 3;
 
 [[nodiscard]] std_msgs::msg::Header header(Time stamp, const std::string& frame);
 
