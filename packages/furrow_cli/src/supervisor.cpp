@@ -123,7 +123,7 @@ void Supervisor::reap(Entry& entry) {
   entry.line.clear();
   entry.child.reset();
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-  if (entry.process.reports && !stopping_ && code != 0) result_ = code;
+  if (entry.process.reports && code != 0 && (finished_ || !stopping_)) result_ = code;
   if (code == 0) {
     ended_well(entry);
   } else if (!stopping_ && code == kBadConfiguration) {

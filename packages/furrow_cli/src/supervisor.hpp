@@ -29,7 +29,8 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// Exit code for the user: that of the process that reports, else 0 when the run was finished.
+  /// Exit code for the user: that of the process that reports, also where it had to be stopped
+  /// after the others saw the end of the run; else 0 when the run was finished.
   [[nodiscard]] int run();
 
  private:

@@ -13,6 +13,7 @@
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_msgs/idl_schema.hpp"
 #include "furrow_msgs/topics.hpp"
+#include "furrow_msgs/type_names.hpp"
 #include "signals.hpp"
 
 namespace furrow::cli {
@@ -51,17 +52,6 @@ const dds::TopicInfo* find_topic(const dds::DiscoverySnapshot& snapshot, const s
   return it == snapshot.topics.end() || it->writers.empty() ? nullptr : &*it;
 }
 
-/// "sensor_msgs::msg::dds_::Image_" as ROS 2 calls it.
-std::string ros_type(std::string name) {
-  const auto dds = name.find("dds_::");
-  if (dds != std::string::npos) name.erase(dds, 6);
-  if (name.ends_with('_')) name.pop_back();
-  for (auto at = name.find("::"); at != std::string::npos; at = name.find("::")) {
-    name.replace(at, 2, "/");
-  }
-  return name;
-}
-
 int list(const TopicOptions& options) {
   const dds::DdsTransport transport = join(options);
   // Endpoints come one after another: wait until nothing new has come for a while.
@@ -78,7 +68,7 @@ int list(const TopicOptions& options) {
   for (const dds::TopicInfo& topic : transport.discovery().topics) {
     std::string types;
     for (const std::string& type : topic.type_names) {
-      types += (types.empty() ? "" : ", ") + ros_type(type);
+      types += (types.empty() ? "" : ", ") + msgs::ros_type_name(type);
     }
     rows.push_back({topic.name, types, std::to_string(topic.writers.size()),
                     std::to_string(topic.readers.size())});
@@ -224,7 +214,7 @@ int echo(const TopicOptions& options) {
         if (!schema) {
           const msgs::MessageType* type = known_type(name);
           if (type == nullptr) {
-            std::cout << ros_type(name) << ", " << message.payload.size() << " bytes\n---\n";
+            std::cout << msgs::ros_type_name(name) << ", " << message.payload.size() << " bytes\n---\n";
             return true;
           }
           auto parsed = msgs::IdlSchema::parse(type->idl);

@@ -3,6 +3,8 @@
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -49,6 +51,19 @@ void wait_for_interfaces(const std::vector<std::string>& addresses,
     }
     std::this_thread::sleep_for(kPause);
   }
+}
+
+std::uint16_t free_udp_port() {
+  const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  socklen_t size = sizeof(address);
+  auto* any = reinterpret_cast<sockaddr*>(&address);
+  const bool given =
+      probe >= 0 && ::bind(probe, any, size) == 0 && ::getsockname(probe, any, &size) == 0;
+  if (probe >= 0) ::close(probe);
+  if (!given) throw ConfigError("no UDP port is free on this host");
+  return ntohs(address.sin_port);
 }
 
 }  // namespace furrow::dds

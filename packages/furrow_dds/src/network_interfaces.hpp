@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,9 @@ namespace furrow::dds {
 /// names the first address that did not come within `patience`.
 void wait_for_interfaces(const std::vector<std::string>& addresses,
                          std::chrono::milliseconds patience);
+
+/// A UDP port that nobody on this host had a moment ago, of those that the system gives away.
+/// Throws ConfigError when there is none.
+[[nodiscard]] std::uint16_t free_udp_port();
 
 }  // namespace furrow::dds

@@ -11,6 +11,8 @@
 #include <memory>
 
 #include "endpoint_qos.hpp"
+#include "furrow_msgs/type_names.hpp"
+#include "network_interfaces.hpp"
 #include "shared_memory.hpp"
 
 namespace furrow::dds {
@@ -32,8 +34,8 @@ bool has(const std::vector<std::string>& list, const char* entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
 }
 
-/// For data, and alone for discovery: what is said of participants and endpoints must arrive even
-/// where a process died with its shared memory open. Ports left at 0 become those of the standard.
+/// For discovery and all but large data: what is said must arrive even where a process died with
+/// its shared memory open. Ports left at 0 become those of the standard.
 void listen_on_udp(fdds::WireProtocolConfigQos& wire) {
   rtps::Locator_t any;
   any.kind = LOCATOR_KIND_UDPv4;
@@ -57,8 +59,8 @@ void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos&
     shm->segment_size(static_cast<std::uint32_t>(parameters.shm_segment_mb * 1'000'000));
     shm->port_queue_capacity(kShmPortQueue);
     qos.transport().user_transports.push_back(shm);
-    for (const rtps::Locator_t& locator : own_shm_locators(*shm)) {
-      qos.wire_protocol().default_unicast_locator_list.push_back(locator);
+    if (!has(parameters.transports, "udp")) {
+      qos.wire_protocol().default_unicast_locator_list = own_shm_locators(*shm);
     }
   }
   if (has(parameters.transports, "udp")) {
@@ -179,6 +181,19 @@ fdds::DomainParticipantQos participant_qos(const DdsParameters& parameters) {
   set_transports(parameters, qos);
   set_discovery(parameters, qos);
   return qos;
+}
+
+rtps::LocatorList_t reader_locators(const DdsParameters& parameters, const std::string& type_name) {
+  if (!has(parameters.transports, "shm") || !has(parameters.transports, "udp") ||
+      !has(parameters.shm_types, msgs::ros_type_name(type_name).c_str())) {
+    return {};
+  }
+  rtps::LocatorList_t own = own_shm_locators(SharedMemTransportDescriptor());
+  rtps::Locator_t udp;
+  udp.kind = LOCATOR_KIND_UDPv4;
+  udp.port = free_udp_port();
+  own.push_back(udp);
+  return own;
 }
 
 std::string process_user_data() {

@@ -14,6 +14,11 @@ namespace furrow::dds {
 [[nodiscard]] eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const DdsParameters& parameters);
 
+/// Where a reader of this type ("sensor_msgs::msg::dds_::Image_") listens; empty: where its
+/// participant does. One with locators of its own must get them anew at each call.
+[[nodiscard]] eprosima::fastdds::rtps::LocatorList reader_locators(const DdsParameters& parameters,
+                                                                   const std::string& type_name);
+
 inline constexpr std::uint32_t kDiscoveryServerPort = 11811;
 inline constexpr std::int64_t kMaxDiscoveryServers = 256;
 

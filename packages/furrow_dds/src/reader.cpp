@@ -1,6 +1,7 @@
 #include "reader.hpp"
 
 #include "endpoint_qos.hpp"
+#include "participant_qos.hpp"
 
 namespace furrow::dds {
 
@@ -14,8 +15,9 @@ Reader::Reader(Participant& participant, const std::string& topic, const std::st
       topic_(topic),
       handler_(std::move(handler)),
       topic_use_(participant, topic, type_name) {
-  data_reader_ =
-      participant.subscriber().create_datareader(topic_use_.get(), reader_qos(qos), &listener_);
+  fdds::DataReaderQos own = reader_qos(qos);
+  own.endpoint().unicast_locator_list = reader_locators(participant.parameters(), type_name);
+  data_reader_ = participant.subscriber().create_datareader(topic_use_.get(), own, &listener_);
   if (data_reader_ == nullptr) {
     throw ConfigError("topic " + topic + ": DDS refused a reader with this QoS");
   }

@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace furrow::dds {
 
@@ -27,17 +27,20 @@ constexpr std::string_view kPortPrefix = "port";
 constexpr std::string_view kLockSuffix = "_el";
 constexpr std::size_t kSegmentDigits = 16;
 
-/// Whether a name without prefix and suffix is that of a segment, or of a port that is never used
-/// again.
-bool may_be_removed(std::string_view name) {
+enum class Kind { kOther, kSegment, kPort };
+
+/// Of a name without prefix and suffix; kPort only for ports that are never used again.
+Kind kind_of(std::string_view name) {
   if (name.starts_with(kPortPrefix)) {
     name.remove_prefix(kPortPrefix.size());
     std::uint32_t port = 0;
     const auto [end, failure] = std::from_chars(name.data(), name.data() + name.size(), port);
-    return failure == std::errc() && end == name.data() + name.size() && port >= kFirstOwnShmPort;
+    const bool whole = failure == std::errc() && end == name.data() + name.size();
+    return whole && port >= kFirstOwnShmPort ? Kind::kPort : Kind::kOther;
   }
-  return name.size() == kSegmentDigits &&
-         name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  const bool segment = name.size() == kSegmentDigits &&
+                       name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  return segment ? Kind::kSegment : Kind::kOther;
 }
 
 /// Fast DDS holds a lock on the file as long as the process lives.
@@ -47,6 +50,23 @@ bool nobody_holds(const fs::path& lock_file) {
   const bool free = ::flock(file, LOCK_EX | LOCK_NB) == 0;
   ::close(file);
   return free;
+}
+
+bool is_newer(const fs::path& file, fs::file_time_type than) {
+  std::error_code unread;
+  const fs::file_time_type time = fs::last_write_time(file, unread);
+  return !unread && time >= than;
+}
+
+/// A port without a lock was made anew by a process that wrote to it when its reader was dead.
+bool is_dead(const fs::path& folder, const std::string& name, fs::file_time_type newest) {
+  const Kind kind = kind_of(std::string_view(name).substr(kPrefix.size()));
+  if (kind == Kind::kOther) return false;
+  const fs::path lock_file = folder / (name + std::string(kLockSuffix));
+  if (is_newer(folder / name, newest) || is_newer(lock_file, newest)) return false;
+  std::error_code unread;
+  if (!fs::exists(lock_file, unread)) return !unread && kind == Kind::kPort;
+  return nobody_holds(lock_file);
 }
 
 }  // namespace
@@ -64,17 +84,13 @@ LocatorList own_shm_locators(const SharedMemTransportDescriptor& transport) {
 std::size_t remove_dead_shared_memory(const fs::path& folder, std::chrono::seconds age) {
   const auto newest = fs::file_time_type::clock::now() - age;
   std::error_code failure;
-  std::vector<std::string> dead;
+  std::set<std::string> dead;
   for (fs::directory_iterator it(folder, failure); !failure && it != fs::directory_iterator();
        it.increment(failure)) {
-    const std::string file = it->path().filename().string();
-    if (!file.starts_with(kPrefix) || !file.ends_with(kLockSuffix)) continue;
-    const std::string name = file.substr(0, file.size() - kLockSuffix.size());
-    std::error_code unread;
-    if (may_be_removed(std::string_view(name).substr(kPrefix.size())) &&
-        it->last_write_time(unread) < newest && !unread && nobody_holds(it->path())) {
-      dead.push_back(name);
-    }
+    std::string name = it->path().filename().string();
+    if (!name.starts_with(kPrefix)) continue;
+    if (name.ends_with(kLockSuffix)) name.resize(name.size() - kLockSuffix.size());
+    if (is_dead(folder, name, newest)) dead.insert(name);
   }
   for (const std::string& name : dead) {
     for (const std::string& file :

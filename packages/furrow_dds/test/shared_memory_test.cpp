@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using eprosima::fastdds::rtps::LocatorList;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 
-TEST(SharedMemory, EveryParticipantGetsAPortOfItsOwn) {
+TEST(SharedMemory, EveryReaderGetsAPortOfItsOwn) {
   const SharedMemTransportDescriptor transport;
   std::set<std::uint32_t> ports;
   for (int i = 0; i < 100; ++i) {
@@ -60,7 +60,12 @@ TEST_F(DeadSharedMemory, OnlyWhatNobodyHoldsIsRemoved) {
   make("fastrtps_0123456789abcdef");  // of a process that was killed
   make("fastrtps_port200000");
   std::ofstream(folder_ / "sem.fastrtps_port200000_mutex") << "mutex";
+  make("fastrtps_port300000");  // made anew by one that wrote to it, without a lock
+  fs::remove(folder_ / "fastrtps_port300000_el");
+  make("fastrtps_00000000000000aa");  // a segment that nobody has locked yet
+  fs::remove(folder_ / "fastrtps_00000000000000aa_el");
   make("fastrtps_fedcba9876543210");  // held below
+  make("fastrtps_port400000");        // held below
   make("fastrtps_port7411");          // of the standard's ports: it may be used again
   make("fastrtps_port200000x");
   make("fastrtps_0123");
@@ -71,16 +76,20 @@ TEST_F(DeadSharedMemory, OnlyWhatNobodyHoldsIsRemoved) {
   const int held = ::open((folder_ / "fastrtps_fedcba9876543210_el").c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_GE(held, 0);
   ASSERT_EQ(::flock(held, LOCK_EX | LOCK_NB), 0);
+  const int port = ::open((folder_ / "fastrtps_port400000_el").c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(port, 0);
+  ASSERT_EQ(::flock(port, LOCK_EX | LOCK_NB), 0);
 
   std::set<std::string> expected = left();
   for (const char* gone :
        {"fastrtps_0123456789abcdef", "fastrtps_0123456789abcdef_el", "fastrtps_port200000",
-        "fastrtps_port200000_el", "sem.fastrtps_port200000_mutex"}) {
+        "fastrtps_port200000_el", "sem.fastrtps_port200000_mutex", "fastrtps_port300000"}) {
     expected.erase(gone);
   }
-  EXPECT_EQ(remove_dead_shared_memory(folder_, std::chrono::seconds(60)), 2U);
+  EXPECT_EQ(remove_dead_shared_memory(folder_, std::chrono::seconds(60)), 3U);
   EXPECT_EQ(left(), expected);
   ::close(held);
+  ::close(port);
 }
 
 TEST_F(DeadSharedMemory, AFolderThatIsNotThereHoldsNothing) {

@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "furrow_msgs/message_types.hpp"
+#include "furrow_msgs/type_names.hpp"
 #include "ros2msg.hpp"
 
 namespace furrow::recording {
 namespace {
 
 constexpr std::size_t kMaxQosText = 1u << 16;
-constexpr std::string_view kDdsScope = "::msg::dds_::";
 constexpr std::string_view kRosScope = "/msg/";
 constexpr std::string_view kIdlScope = "::msg::";
 
@@ -81,25 +81,6 @@ bool TopicDescription::latched() const {
   });
 }
 
-std::string ros_type_name(std::string_view type_name) {
-  const std::size_t scope = type_name.find(kDdsScope);
-  if (scope == std::string_view::npos || !type_name.ends_with('_')) {
-    return std::string(type_name);
-  }
-  const std::string_view name = type_name.substr(scope + kDdsScope.size());
-  return std::string(type_name.substr(0, scope)) + std::string(kRosScope) +
-         std::string(name.substr(0, name.size() - 1));
-}
-
-std::string dds_type_name(std::string_view type_name) {
-  const std::size_t scope = type_name.find(kRosScope);
-  if (scope == std::string_view::npos) {
-    return std::string(type_name);
-  }
-  return std::string(type_name.substr(0, scope)) + std::string(kDdsScope) +
-         std::string(type_name.substr(scope + kRosScope.size())) + "_";
-}
-
 std::string schema_name(const TopicDescription& topic) {
   const std::size_t scope = topic.type_name.find(kRosScope);
   if (topic.schema_encoding != "omgidl" || scope == std::string::npos) {
@@ -126,7 +107,7 @@ TopicDescription describe_topic(std::string_view name, std::string_view type_nam
                                 const std::vector<msgs::Qos>& offered_qos, SchemaStyle style) {
   TopicDescription topic;
   topic.name = name;
-  topic.type_name = ros_type_name(type_name);
+  topic.type_name = msgs::ros_type_name(type_name);
   topic.offered_qos = offered_qos;
   for (const msgs::MessageType* type : msgs::all_message_types()) {
     if (type->ros_name != topic.type_name) {
@@ -206,7 +187,7 @@ TopicDescription describe_channel(const mcap::Channel& channel, const mcap::Sche
   topic.name = topic_from_file(channel.topic);
   topic.message_encoding = channel.message_encoding;
   if (schema != nullptr) {
-    topic.type_name = ros_type_name(schema->name);
+    topic.type_name = msgs::ros_type_name(schema->name);
     topic.schema_encoding = schema->encoding;
     topic.schema_text = schema->data;
     const std::size_t scope = topic.type_name.find(kIdlScope);

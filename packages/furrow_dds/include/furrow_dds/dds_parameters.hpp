@@ -13,6 +13,7 @@ struct DdsParameters {
   std::int64_t domain_id = 0;
   std::string process_name = "furrow";
   std::vector<std::string> transports = {"shm", "udp"};
+  std::vector<std::string> shm_types = {"sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"};
   std::vector<std::string> interfaces = {"127.0.0.1"};
   std::string discovery = "multicast";
   std::vector<std::string> peers;
@@ -34,6 +35,10 @@ struct DdsParameters {
     v.visit({.name = "transports",
              .description = "\"shm\" (same host), \"udp\", or both; processes need a common one"},
             transports);
+    v.visit({.name = "shm_types",
+             .description = "types whose messages use shared memory where both transports are "
+                            "there; all others go over UDP, which a dying process cannot damage"},
+            shm_types);
     v.visit({.name = "interfaces",
              .description = "IPv4 addresses of this host that UDP may use; empty: all of them"},
             interfaces);

@@ -26,11 +26,6 @@ struct TopicDescription {
   [[nodiscard]] bool latched() const;
 };
 
-/// `type_name` in either form: "pkg::msg::dds_::Type_" becomes "pkg/msg/Type"; others stay.
-[[nodiscard]] std::string ros_type_name(std::string_view type_name);
-/// The other way round; names that are not "pkg/msg/Type" stay.
-[[nodiscard]] std::string dds_type_name(std::string_view type_name);
-
 [[nodiscard]] std::string topic_in_file(std::string_view name);
 [[nodiscard]] std::string topic_from_file(std::string_view name);
 
