@@ -214,7 +214,8 @@ int echo(const TopicOptions& options) {
         if (!schema) {
           const msgs::MessageType* type = known_type(name);
           if (type == nullptr) {
-            std::cout << msgs::ros_type_name(name) << ", " << message.payload.size() << " bytes\n---\n";
+            std::cout << msgs::ros_type_name(name) << ", " << message.payload.size()
+                      << " bytes\n---\n";
             return true;
           }
           auto parsed = msgs::IdlSchema::parse(type->idl);

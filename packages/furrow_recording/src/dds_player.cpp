@@ -79,12 +79,13 @@ class DdsPlayer::Impl {
   Impl(dds::DdsTransport& transport, Player player, const DdsPlayerOptions& options)
       : options_(options), player_(std::move(player)) {
     for (const TopicDescription& topic : player_.topics()) {
-      writers_.push_back(
-          transport.make_raw_writer(topic.name, msgs::dds_type_name(topic.type_name), strongest(topic)));
+      writers_.push_back(transport.make_raw_writer(topic.name, msgs::dds_type_name(topic.type_name),
+                                                   strongest(topic)));
     }
     queued_.resize(writers_.size());
     if (player_.options().clock_hz > 0.0) {
-      clock_ = transport.make_raw_writer("clock", msgs::dds_type_name(kClockType), msgs::sensor_qos(10));
+      clock_ =
+          transport.make_raw_writer("clock", msgs::dds_type_name(kClockType), msgs::sensor_qos(10));
     }
     lateness_s_.reserve(kLatenessSamples);
     thread_ = std::thread([this] { run(); });
