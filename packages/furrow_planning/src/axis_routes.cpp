@@ -138,8 +138,8 @@ class PermutationRouter final : public AxisRouter {
       if ((used >> i & 1U) != 0U || !at.spans(node.y_m) || !at.reaches(node.x_m, node.y_m)) {
         continue;
       }
-      const double spare_s =
-          (node.x_m - at.x_m) / prepared.speed_mps - at.transition.move_s(node.y_m - at.y_m);
+      const double spare_s = (at.way_m(node.x_m) - at.way_m(at.x_m)) / prepared.speed_mps -
+                             at.transition.move_s(node.y_m - at.y_m);
       current_.push_back(block[i]);
       extend(prepared, at_node(at, node), block, used | 1U << i, score + node.score,
              gamma_sum + feasibility(spare_s, omega_));

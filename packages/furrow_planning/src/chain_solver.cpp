@@ -51,7 +51,7 @@ void ChainSolver::solve(const PreparedProblem& prepared, const Start& start,
     }
     for (std::size_t j = near; j < k; ++j) {
       if (labels_[j].score >= label.score && labels_[j].score >= 0 &&
-          start.transition.feasible(to.x_m - node(j).x_m, to.y_m - node(j).y_m)) {
+          start.follows(node(j).x_m, node(j).y_m, to.x_m, to.y_m)) {
         follow(j);
       }
     }

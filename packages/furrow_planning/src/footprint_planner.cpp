@@ -196,7 +196,7 @@ void FootprintPlanner::share_out() {
 void FootprintPlanner::centre_route(const Start& start, std::size_t axis) {
   auto& aims = aims_[axis];
   const auto can_follow = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-    return start.transition.feasible(to.x() - from.x(), to.y() - from.y());
+    return start.follows(from.x(), from.y(), to.x(), to.y());
   };
   for (std::size_t s = 0; s < aims.size(); ++s) {
     Eigen::Vector2d lower = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());

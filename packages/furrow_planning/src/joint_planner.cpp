@@ -16,16 +16,26 @@ Status JointPlanner::plan(const PlanningProblem& problem, Plan& plan) {
   if (classes_.size() <= 1) {
     solve_classes();
     write_chains(problem, prepared_, chains_, plan);
-    plan.weight_bound = plan.weight;
+    plan.weight_bound = problem.speeds == nullptr ? plan.weight : weight_of_nodes();
     return {};
   }
   const auto bound = static_cast<double>(solve_mixed(problem));
   write_chains(problem, prepared_, chains_, plan);
   // Scores are rounded to the nearest one.
   plan.weight_bound =
-      std::max(plan.weight, (bound + 0.5 * static_cast<double>(prepared_.nodes.size())) /
-                                prepared_.scoring.scores_per_weight);
+      problem.speeds != nullptr
+          ? weight_of_nodes()
+          : std::max(plan.weight, (bound + 0.5 * static_cast<double>(prepared_.nodes.size())) /
+                                      prepared_.scoring.scores_per_weight);
   return {};
+}
+
+/// At speeds that change, what the axes may do is told by the greatest one, and the flow is no
+/// optimum.
+double JointPlanner::weight_of_nodes() const {
+  double weight = 0.0;
+  for (const Node& node : prepared_.nodes) weight += node.weight;
+  return weight;
 }
 
 std::int64_t JointPlanner::solve_mixed(const PlanningProblem& problem) {

@@ -26,6 +26,7 @@ class JointPlanner final : public RoutePlanner {
   /// Improves chains_ class by class until nothing is gained. Returns their score.
   std::int64_t solve_classes();
   /// Writes chains_; returns the bound.
+  [[nodiscard]] double weight_of_nodes() const;
   [[nodiscard]] std::int64_t solve_mixed(const PlanningProblem& problem);
   [[nodiscard]] std::int64_t solve_relaxed(const PlanningProblem& problem);
 

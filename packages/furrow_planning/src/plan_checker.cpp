@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "furrow_planning/speed_profile.hpp"
+
 namespace furrow::planning {
 namespace {
 
@@ -72,8 +74,17 @@ Status PlanChecker::check(const PlanningProblem& problem, const Plan& plan) {
   if (plan.decisions.size() != problem.targets.size()) {
     return fault("has not one decision for each target");
   }
-  const double speed_mps =
-      parameters_.speed_source == "measured" ? problem.robot.speed_mps : parameters_.speed_mps;
+  const SpeedProfile* speeds = problem.speeds;
+  if (speeds != nullptr && parameters_.fire_while_moving) {
+    return fault("is for sprays in passing at speeds that change");
+  }
+  const double speed_mps = speeds != nullptr                        ? speeds->greatest_mps()
+                           : parameters_.speed_source == "measured" ? problem.robot.speed_mps
+                                                                    : parameters_.speed_mps;
+  const auto elapsed_s = [&](double from_x_m, double to_x_m) {
+    return speeds != nullptr ? speeds->time_s(to_x_m) - speeds->time_s(from_x_m)
+                             : (to_x_m - from_x_m) / speed_mps;
+  };
   // By id, the first given of equal ids first.
   seen_.clear();
   for (std::uint32_t i = 0; i < problem.targets.size(); ++i) {
@@ -122,7 +133,7 @@ Status PlanChecker::check(const PlanningProblem& problem, const Plan& plan) {
         return fault(stop_name(a, s) + " is outside the axis's span");
       }
       const double way_m = std::abs(stop.position_m - from_position_m);
-      const double spare_s = (stop.robot_x_m - from_x_m) / speed_mps -
+      const double spare_s = elapsed_s(from_x_m, stop.robot_x_m) -
                              axis_time_s(parameters_, axis, way_m) - parameters_.settle_s - dwell_s;
       if (stop.moving) {
         if (!parameters_.fire_while_moving || s + 1 == route.size() || route[s + 1].moving) {

@@ -27,7 +27,10 @@ Status check_problem(const PlanningProblem& problem, const PlannerParameters& pa
   if (!std::isfinite(robot.x_m) || !std::isfinite(robot.y_m)) {
     return bad("the robot's position is not finite");
   }
-  if (parameters.speed_source == "measured" &&
+  if (problem.speeds != nullptr && parameters.fire_while_moving) {
+    return bad("sprays in passing are planned at a constant speed only");
+  }
+  if (problem.speeds == nullptr && parameters.speed_source == "measured" &&
       !(std::isfinite(robot.speed_mps) && robot.speed_mps > 0.0)) {
     return bad("the robot's speed is not positive");
   }
@@ -112,8 +115,9 @@ Status prepare(const PlanningProblem& problem, const PlannerParameters& paramete
   if (Status status = check_problem(problem, parameters); !status) {
     return status;
   }
-  prepared.speed_mps =
-      parameters.speed_source == "measured" ? problem.robot.speed_mps : parameters.speed_mps;
+  prepared.speed_mps = problem.speeds != nullptr               ? problem.speeds->greatest_mps()
+                       : parameters.speed_source == "measured" ? problem.robot.speed_mps
+                                                               : parameters.speed_mps;
   prepared.robot_y_m = problem.robot.y_m;
   prepared.starts.clear();
   double extent_m = 1e-6;
@@ -128,7 +132,8 @@ Status prepare(const PlanningProblem& problem, const PlannerParameters& paramete
          .offset_x_m = axis.offset_x_m,
          .usable = state.in_service,
          .after_spray = state.after_spray,
-         .transition = Transition(parameters, prepared.speed_mps, axis)});
+         .transition = Transition(parameters, prepared.speed_mps, axis),
+         .speeds = problem.speeds});
     extent_m = std::max({extent_m, axis.upper_m - axis.lower_m, axis.upper_m - state.position_m,
                          state.position_m - axis.lower_m});
   }
@@ -195,7 +200,11 @@ void time_stop(const Start& start, double robot_y_m, const Stop* previous, Stop&
   stop.robot_x_m = stop.aim_F.x() - start.offset_x_m;
   stop.position_m = stop.aim_F.y() - robot_y_m;
   const double from_y_m = previous != nullptr ? previous->aim_F.y() : start.y_m;
-  stop.depart_x_m = stop.robot_x_m - start.transition.first_dx_m(stop.aim_F.y() - from_y_m);
+  const double before_m = start.transition.first_dx_m(stop.aim_F.y() - from_y_m);
+  stop.depart_x_m = start.speeds == nullptr
+                        ? stop.robot_x_m - before_m
+                        : start.speeds->x_m(start.speeds->time_s(stop.robot_x_m) -
+                                            before_m / start.transition.speed_mps());
 }
 
 void write_chains(const PlanningProblem& problem, const PreparedProblem& prepared,

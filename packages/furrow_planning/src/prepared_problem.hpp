@@ -6,6 +6,7 @@
 #include "furrow_core/result.hpp"
 #include "furrow_planning/kinematics.hpp"
 #include "furrow_planning/parameters.hpp"
+#include "furrow_planning/speed_profile.hpp"
 #include "furrow_planning/types.hpp"
 
 namespace furrow::planning {
@@ -29,14 +30,24 @@ struct Start {
   double offset_x_m = 0.0;
   bool usable = false;
   bool after_spray = false;
-  Transition transition;
+  Transition transition;  ///< for the greatest of the robot's speeds
+  const SpeedProfile* speeds = nullptr;
 
+  /// The place x of the ground as the axis meets it, on a scale on which the robot goes at the
+  /// transition's speed: only differences count.
+  [[nodiscard]] double way_m(double x) const {
+    return speeds == nullptr ? x : transition.speed_mps() * speeds->time_s(x - offset_x_m);
+  }
+  /// Whether a spray at the second place can follow one at the first.
+  [[nodiscard]] bool follows(double from_x, double from_y, double to_x, double to_y) const {
+    return transition.feasible(way_m(to_x) - way_m(from_x), to_y - from_y);
+  }
   [[nodiscard]] bool spans(double y) const { return y >= lower_y_m && y <= upper_y_m; }
   [[nodiscard]] double needed_dx_m(double dy_m) const {
     return after_spray ? transition.needed_dx_m(dy_m) : transition.first_dx_m(dy_m);
   }
   [[nodiscard]] bool reaches(double x, double y) const {
-    return x - x_m >= needed_dx_m(y - y_m) - Transition::kSlack_m;
+    return way_m(x) - way_m(x_m) >= needed_dx_m(y - y_m) - Transition::kSlack_m;
   }
 };
 
@@ -61,7 +72,7 @@ struct PreparedProblem {
   std::vector<Node> nodes;
   std::vector<Start> starts;  ///< one for each axis
   Scoring scoring;
-  double speed_mps = 0.5;
+  double speed_mps = 0.5;  ///< the greatest, where it changes
   double robot_y_m = 0.0;
   std::vector<std::uint32_t> order;  ///< scratch
 };

@@ -38,7 +38,7 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
   labels_.clear();
   radius_m_ = candidates.radius_m();
   const Scoring& scoring = prepared.scoring;
-  const double least_dx_m = start.transition.needed_dx_m(0.0) - Transition::kSlack_m;
+  const double least_way_m = start.transition.needed_dx_m(0.0) - Transition::kSlack_m;
   std::int64_t best = 0;
   std::int32_t best_end = -1;
   for (std::uint32_t s = 0; s < candidates.sprays().size(); ++s) {
@@ -50,7 +50,7 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
     if (alone <= 0) {
       continue;
     }
-    Label label{.x_m = spray.x_m, .y_m = spray.y_m, .spray = s};
+    Label label{.x_m = spray.x_m, .y_m = spray.y_m, .way_m = start.way_m(spray.x_m), .spray = s};
     if (start.reaches(spray.x_m, spray.y_m)) {
       label.value = alone - scoring.travel(spray.y_m - start.y_m);
     }
@@ -59,12 +59,12 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
       if (from.best_to_here + alone <= label.value) {
         break;
       }
-      const double dx_m = spray.x_m - from.x_m;
-      if (dx_m < least_dx_m || from.value + alone <= label.value) {
+      const double way_m = label.way_m - from.way_m;
+      if (way_m < least_way_m || from.value + alone <= label.value) {
         continue;
       }
       const double dy_m = spray.y_m - from.y_m;
-      if (!start.transition.feasible(dx_m, dy_m)) {
+      if (!start.transition.feasible(way_m, dy_m)) {
         continue;
       }
       const std::int64_t before = from.value - scoring.travel(dy_m);
@@ -72,7 +72,7 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
         continue;
       }
       const std::int64_t value =
-          dx_m > 2.0 * radius_m_
+          spray.x_m - from.x_m > 2.0 * radius_m_
               ? before + alone
               : before + gain(candidates, spray, j, covered, extra) * Scoring::kScore;
       if (value > label.value) {

@@ -25,6 +25,7 @@ class SprayChainSolver {
   struct Label {
     double x_m = 0.0;
     double y_m = 0.0;
+    double way_m = 0.0;      ///< see Start
     std::int64_t value = 0;  ///< 0: no chain ends here
     std::int64_t best_to_here = 0;
     std::uint32_t spray = 0;

@@ -183,7 +183,7 @@ Status StreamPlanner::advance(const RobotState& robot, double seen_until_x_m) {
   if (!std::isfinite(robot.x_m) || !std::isfinite(robot.y_m) || !std::isfinite(seen_until_x_m)) {
     return invalid("the robot's state is not finite");
   }
-  if (parameters_.speed_source == "measured" &&
+  if (!speeds_ && parameters_.speed_source == "measured" &&
       !(std::isfinite(robot.speed_mps) && robot.speed_mps > 0.0)) {
     return invalid("the robot's speed is not positive");
   }
@@ -209,7 +209,8 @@ Status StreamPlanner::advance(const RobotState& robot, double seen_until_x_m) {
 }
 
 void StreamPlanner::commit_due_stops() {
-  const double due_x_m = robot_.x_m + parameters_.commit_s * planning_speed_mps();
+  const double due_x_m = speeds_ ? speeds_->x_m(speeds_->time_s(robot_.x_m) + parameters_.commit_s)
+                                 : robot_.x_m + parameters_.commit_s * planning_speed_mps();
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     AxisRecord& axis = axes_[a];
     for (std::size_t s = axis.committed_count; s < plan_.routes[a].size(); ++s) {
@@ -366,11 +367,20 @@ bool StreamPlanner::collect() {
   return true;
 }
 
+PlanningProblem StreamPlanner::problem() const {
+  return {.targets = targets_,
+          .protected_plants = protected_,
+          .axes = specs_,
+          .states = states_,
+          .robot = robot_,
+          .speeds = speeds_ ? &*speeds_ : nullptr};
+}
+
 Result<bool> StreamPlanner::replan() {
   if (!placed_) {
     return Error{ErrorCode::kUnavailable, "the robot's state has not been given yet"};
   }
-  const double speed_mps = planning_speed_mps();
+  const double speed_mps = planning_speed_mps();  // not in use where the speeds are given
   const bool moved = std::abs(speed_mps - planned_speed_mps_) > kSpeedChange * planned_speed_mps_ ||
                      std::abs(robot_.y_m - planned_y_m_) > kDrift_m;
   if (!segments_ && !changed_ && !moved) {
@@ -379,15 +389,11 @@ Result<bool> StreamPlanner::replan() {
   if (!collect()) {
     return false;
   }
-  const PlanningProblem problem{.targets = targets_,
-                                .protected_plants = protected_,
-                                .axes = specs_,
-                                .states = states_,
-                                .robot = robot_};
-  if (Status status = planner_->plan(problem, fresh_); !status) {
+  const PlanningProblem present = problem();
+  if (Status status = planner_->plan(present, fresh_); !status) {
     return status.error();
   }
-  if (Status status = checker_.check(problem, fresh_); !status) {
+  if (Status status = checker_.check(present, fresh_); !status) {
     return status.error();
   }
   planned_speed_mps_ = speed_mps;
@@ -433,6 +439,58 @@ void StreamPlanner::merge() {
       plan_.decisions.push_back({record.target.id, record.decision, record.axis});
     }
   }
+}
+
+Status StreamPlanner::may_change_speed() const {
+  if (segments_) {
+    return invalid("the segment view plans at a constant speed");
+  }
+  if (parameters_.fire_while_moving) {
+    return invalid("sprays in passing are planned at a constant speed");
+  }
+  return {};
+}
+
+Status StreamPlanner::set_speeds(const SpeedProfile& speeds) {
+  if (Status status = may_change_speed(); !status) {
+    return status;
+  }
+  speeds_ = speeds;
+  changed_ = true;
+  return {};
+}
+
+Result<std::span<const LeftTarget>> StreamPlanner::left_at(const SpeedProfile& speeds) {
+  if (Status status = may_change_speed(); !status) {
+    return status.error();
+  }
+  if (!placed_) {
+    return Error{ErrorCode::kUnavailable, "the robot's state has not been given yet"};
+  }
+  (void)collect();
+  PlanningProblem trial = problem();
+  trial.speeds = &speeds;
+  if (Status status = planner_->plan(trial, trial_); !status) {
+    return status.error();
+  }
+  left_.clear();
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (trial_.decisions[i].decision == Decision::kUnreachable) {
+      left_.push_back({targets_[i].p_F.x(), targets_[i].weight});
+    }
+  }
+  std::ranges::sort(left_, {}, &LeftTarget::x_m);
+  return std::span<const LeftTarget>(left_);
+}
+
+double StreamPlanner::committed_until_x_m() const {
+  double until_x_m = robot_.x_m;
+  for (const AxisRecord& axis : axes_) {
+    if (axis.committed_count > 0) {
+      until_x_m = std::max(until_x_m, axis.committed[axis.committed_count - 1].stop.robot_x_m);
+    }
+  }
+  return until_x_m;
 }
 
 void StreamPlanner::take_outcomes(std::vector<TargetOutcome>& outcomes) {

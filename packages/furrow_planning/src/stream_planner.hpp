@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "furrow_planning/observation_view.hpp"
@@ -26,6 +27,9 @@ class StreamPlanner final : public ObservationView {
   Status advance(const RobotState& robot, double seen_until_x_m) override;
   [[nodiscard]] Result<bool> replan() override;
   [[nodiscard]] const Plan& plan() const override { return plan_; }
+  Status set_speeds(const SpeedProfile& speeds) override;
+  [[nodiscard]] Result<std::span<const LeftTarget>> left_at(const SpeedProfile& speeds) override;
+  [[nodiscard]] double committed_until_x_m() const override;
   void take_outcomes(std::vector<TargetOutcome>& outcomes) override;
   [[nodiscard]] const std::vector<double>& travel_m() const override { return travel_m_; }
 
@@ -62,6 +66,8 @@ class StreamPlanner final : public ObservationView {
   void forget_old();
   [[nodiscard]] bool may_plan(const Record& record) const;
   [[nodiscard]] bool collect();
+  [[nodiscard]] Status may_change_speed() const;
+  [[nodiscard]] PlanningProblem problem() const;
   void merge();
 
   PlannerParameters parameters_;
@@ -73,6 +79,7 @@ class StreamPlanner final : public ObservationView {
   std::vector<Record> records_;            ///< by id
   std::vector<ProtectedPlant> protected_;  ///< by id
   RobotState robot_;
+  std::optional<SpeedProfile> speeds_;
   bool placed_ = false;
   bool changed_ = false;
   double seen_until_x_m_ = 0.0;
@@ -85,6 +92,8 @@ class StreamPlanner final : public ObservationView {
   std::vector<std::size_t> target_records_;
   std::vector<AxisState> states_;
   Plan fresh_;
+  Plan trial_;
+  std::vector<LeftTarget> left_;
   Plan plan_;
   std::vector<TargetOutcome> outcomes_;
   std::vector<double> travel_m_;

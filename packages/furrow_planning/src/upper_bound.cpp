@@ -209,6 +209,9 @@ Result<double> footprint_weight_bound(const PlanningProblem& problem,
   if (!(effort.cell_m > 1e-4 && effort.cell_m < 1.0) || effort.iterations < 0) {
     return Error{ErrorCode::kInvalidArgument, "the effort for the bound is not sound"};
   }
+  if (problem.speeds != nullptr) {
+    return Error{ErrorCode::kInvalidArgument, "the bound is for a constant speed"};
+  }
   PreparedProblem prepared;
   Plan scratch;
   if (Status status = prepare(problem, parameters, treat_radius_m(parameters), prepared, scratch);

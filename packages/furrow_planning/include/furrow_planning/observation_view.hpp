@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "furrow_core/result.hpp"
 #include "furrow_planning/parameters.hpp"
+#include "furrow_planning/speed_profile.hpp"
 #include "furrow_planning/types.hpp"
 
 namespace furrow::planning {
@@ -52,6 +54,15 @@ class ObservationView {
   /// Routes from the robot's present position on, committed stops first. Its decisions cover the
   /// targets that are not finished.
   [[nodiscard]] virtual const Plan& plan() const = 0;
+
+  /// From now on plans hold for a robot that drives like this, not at a constant speed. Error: the
+  /// segment view, or sprays in passing.
+  virtual Status set_speeds(const SpeedProfile& speeds) = 0;
+  /// What would be left for want of time, by x, if the robot drove like this. Changes nothing;
+  /// valid until the next call. Error: as set_speeds(), or before the first advance.
+  [[nodiscard]] virtual Result<std::span<const LeftTarget>> left_at(const SpeedProfile& speeds) = 0;
+  /// The robot's x at the last committed spray; where it is now, when there is none.
+  [[nodiscard]] virtual double committed_until_x_m() const = 0;
 
   /// Appends what has been finished since the last call: sprays passed, targets passed by.
   virtual void take_outcomes(std::vector<TargetOutcome>& outcomes) = 0;

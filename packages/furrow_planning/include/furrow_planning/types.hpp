@@ -21,6 +21,12 @@ struct Target {
   double radius_m = 0.0;  ///< of the plant; informative
 };
 
+/// A target that a plan leaves for want of time.
+struct LeftTarget {
+  double x_m = 0.0;  ///< in F
+  double weight = 0.0;
+};
+
 /// A plant that no spray may come near: each spray's centre keeps a distance of footprint radius +
 /// protection zone (PlannerParameters) + `zone_m` from the stem.
 struct ProtectedPlant {
@@ -106,6 +112,8 @@ struct Plan {
   void clear(std::size_t axes);
 };
 
+class SpeedProfile;
+
 /// A snapshot to plan for. Does not own what it refers to.
 struct PlanningProblem {
   std::span<const Target> targets;
@@ -113,6 +121,9 @@ struct PlanningProblem {
   std::span<const AxisSpec> axes;
   std::span<const AxisState> states;  ///< one for each axis
   RobotState robot;
+  /// How the robot will drive; null: at the constant speed that the parameters name. Not with
+  /// fire_while_moving.
+  const SpeedProfile* speeds = nullptr;
 };
 
 }  // namespace furrow::planning
