@@ -56,6 +56,12 @@ void RobotMotionParameters::visit(ParameterVisitor& v) {
            .min = -5.0,
            .max = 5.0},
           profile_speed_mps);
+  v.visit({.name = "limit_acceleration_mps2",
+           .unit = "m/s2",
+           .description = "By which the speed changes to follow a limit that is asked for",
+           .min = 0.01,
+           .max = 20.0},
+          limit_acceleration_mps2);
   v.visit({.name = "speed_noise_mps",
            .unit = "m/s",
            .description = "Standard deviation of the speed about its command",
@@ -139,13 +145,27 @@ double RobotMotion::commanded_speed_mps(double since_start_s) const {
   return std::lerp(speeds[i - 1], speeds[i], fraction);
 }
 
+double RobotMotion::limited(double command_mps) {
+  const double own_mps = std::abs(command_mps);
+  if (!limit_mps_) {
+    if (!asked_limit_mps_) return command_mps;
+    limit_mps_ = own_mps;
+  }
+  const double change_mps = parameters_.limit_acceleration_mps2 * kGrid.to_seconds();
+  const double aim_mps = std::min(asked_limit_mps_.value_or(own_mps), own_mps);
+  limit_mps_ = std::clamp(aim_mps, *limit_mps_ - change_mps, *limit_mps_ + change_mps);
+  const double limit_mps = *limit_mps_;
+  if (!asked_limit_mps_ && limit_mps >= own_mps) limit_mps_.reset();
+  return std::clamp(command_mps, -limit_mps, limit_mps);
+}
+
 void RobotMotion::begin_cell() {
   speed_noise_mps_ = next_noise(speed_noise_mps_, parameters_.speed_noise_mps,
                                 parameters_.speed_correlation_s, speed_random_);
   yaw_noise_radps_ = next_noise(yaw_noise_radps_, parameters_.yaw_noise_radps,
                                 parameters_.yaw_correlation_s, yaw_random_);
   const double next_wheel_mps =
-      commanded_speed_mps((grid_.time + kGrid - start_).to_seconds()) + speed_noise_mps_;
+      limited(commanded_speed_mps((grid_.time + kGrid - start_).to_seconds())) + speed_noise_mps_;
   const double next_speed_mps = next_wheel_mps * (1.0 - parameters_.slip);
   grid_.acceleration_mps2 = (next_speed_mps - grid_.speed_mps) / kGrid.to_seconds();
 

@@ -71,6 +71,43 @@ TEST(RobotMotion, PathDoesNotDependOnTheCallersSteps) {
   EXPECT_NE(other.advance_to(at(2.0)).X_FB.y_m, coarse.state().X_FB.y_m);
 }
 
+TEST(RobotMotion, NearsALimitAndItsOwnSpeedAgainGently) {
+  RobotMotionParameters parameters;
+  parameters.limit_acceleration_mps2 = 0.4;
+  RobotMotion motion(parameters, 1);
+  motion.advance_to(at(1.0));
+  motion.limit_speed(0.3);
+  EXPECT_NEAR(motion.advance_to(at(1.25)).speed_mps, 0.5 - 0.4 * 0.25, 1e-3);
+  EXPECT_NEAR(motion.advance_to(at(2.0)).speed_mps, 0.3, 1e-12);
+  // 0.5 s at a mean of 0.4, then held; a cell of 1 ms may have begun before the limit came.
+  EXPECT_NEAR(motion.state().X_FB.x_m, 0.5 + 0.2 + 0.15, 5e-4);
+  motion.limit_speed(std::nullopt);
+  EXPECT_NEAR(motion.advance_to(at(2.25)).speed_mps, 0.4, 1e-3);
+  EXPECT_DOUBLE_EQ(motion.advance_to(at(3.0)).speed_mps, 0.5);
+}
+
+TEST(RobotMotion, ALimitAboveItsOwnSpeedChangesNothing) {
+  RobotMotion free(noisy(), 3);
+  RobotMotion limited(noisy(), 3);
+  limited.limit_speed(2.0);
+  EXPECT_EQ(limited.advance_to(at(5.0)).X_FB.x_m, free.advance_to(at(5.0)).X_FB.x_m);
+  limited.limit_speed(std::nullopt);
+  EXPECT_EQ(limited.advance_to(at(9.0)).X_FB.y_m, free.advance_to(at(9.0)).X_FB.y_m);
+}
+
+TEST(RobotMotion, ALimitHoldsInBothDirectionsAndDownToAStandstill) {
+  RobotMotionParameters parameters;
+  parameters.profile_time_s = {0.0, 4.0};
+  parameters.profile_speed_mps = {-0.4, 0.4};
+  RobotMotion motion(parameters, 1);
+  motion.limit_speed(0.1);
+  for (const double t : {2.0, 2.2, 3.0, 4.0, 5.0}) {
+    EXPECT_LE(std::abs(motion.advance_to(at(t)).speed_mps), 0.1 + 1e-12) << t;
+  }
+  motion.limit_speed(0.0);
+  EXPECT_NEAR(motion.advance_to(at(6.0)).speed_mps, 0.0, 1e-12);
+}
+
 TEST(RobotMotion, DoesNotGoBackInTime) {
   RobotMotion motion(noisy(), 7);
   const double x_m = motion.advance_to(at(1.0)).X_FB.x_m;

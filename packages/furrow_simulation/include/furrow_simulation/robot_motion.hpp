@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "furrow_core/parameters.hpp"
@@ -17,6 +18,7 @@ struct RobotMotionParameters {
   /// time make a step. Empty: speed_mps throughout. Negative speeds drive backwards.
   std::vector<double> profile_time_s;
   std::vector<double> profile_speed_mps;
+  double limit_acceleration_mps2 = 0.5;
   double speed_noise_mps = 0.0;  ///< standard deviation
   double speed_correlation_s = 1.0;
   double yaw_noise_radps = 0.0;  ///< standard deviation of the disturbing yaw rate
@@ -56,7 +58,13 @@ class RobotMotion {
   /// Does nothing when `time` is past already.
   const RobotState& advance_to(Time time);
 
+  /// From now on the command's magnitude nears, by limit_acceleration_mps2, the lesser of its own
+  /// and `limit_mps`; without one, its own. A motion that was never limited accelerates as its
+  /// profile says. @pre finite, >= 0.
+  void limit_speed(std::optional<double> limit_mps) { asked_limit_mps_ = limit_mps; }
+
  private:
+  [[nodiscard]] double limited(double command_mps);
   [[nodiscard]] double commanded_speed_mps(double since_start_s) const;
   void begin_cell();
   [[nodiscard]] RobotState within_cell(Duration since_grid) const;
@@ -65,6 +73,8 @@ class RobotMotion {
   Random speed_random_;
   Random yaw_random_;
   Time start_;
+  std::optional<double> asked_limit_mps_;
+  std::optional<double> limit_mps_;  ///< in force; nears what is asked
   double speed_noise_mps_ = 0.0;
   double yaw_noise_radps_ = 0.0;
   RobotState grid_;  ///< at the last grid time, with the inputs of the cell that it begins
