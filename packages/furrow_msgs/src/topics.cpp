@@ -22,6 +22,7 @@ enum Row : std::size_t {
   kTracks,
   kPlan,
   kPlannerHeartbeat,
+  kSpeedRequest,
   kAxisState,
   kAxisEvent,
   kJointStates,
@@ -81,6 +82,9 @@ const std::array<Topic, kRows>& table() {
       {"planner/heartbeat", &message_type<topics::PlannerHeartbeat::Message>(),
        watched(sensor_qos(1), kFastGap), 50, "",
        "That the planner is alive; without it the tools make themselves safe."},
+      {"robot/speed_request", &message_type<topics::SpeedRequest::Message>(), sensor_qos(1), 50,
+       "base_link",
+       "The speed at which the tool keeps up with the weeds ahead, asked of the robot; m/s."},
       {"axis/state", &message_type<topics::AxisState::Message>(), watched(sensor_qos(50), kFastGap),
        50, "", "Position, velocity and state of one axis; m, m/s."},
       {"axis/event", &message_type<topics::AxisEvent::Message>(), event_qos(), 0, "field",
@@ -159,6 +163,9 @@ const Topic& Plan::topic() {
 }
 const Topic& PlannerHeartbeat::topic() {
   return table()[kPlannerHeartbeat];
+}
+const Topic& SpeedRequest::topic() {
+  return table()[kSpeedRequest];
 }
 const Topic& AxisState::topic() {
   return table()[kAxisState];

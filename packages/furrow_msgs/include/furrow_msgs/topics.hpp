@@ -98,6 +98,11 @@ struct PlannerHeartbeat {
   [[nodiscard]] static const Topic& topic();
 };
 
+struct SpeedRequest {
+  using Message = geometry_msgs::msg::TwistStamped;
+  [[nodiscard]] static const Topic& topic();
+};
+
 struct AxisState {
   using Message = furrow_msgs::msg::AxisState;
   [[nodiscard]] static const Topic& topic();
