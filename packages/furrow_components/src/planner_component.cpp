@@ -14,6 +14,7 @@
 #include "furrow_graph/stamp.hpp"
 #include "furrow_planning/harmfulness.hpp"
 #include "furrow_planning/observation_view.hpp"
+#include "speed_requests.hpp"
 
 namespace furrow::components {
 namespace {
@@ -29,8 +30,10 @@ struct Parameters {
   double max_pose_age_s = 0.2;
   double max_tracks_age_s = 2.0;
   double heartbeat_rate_hz = 50.0;
+  bool govern_speed = false;
   planning::PlannerParameters planner;
   planning::HarmfulnessParameters harmfulness;
+  planning::SpeedGovernorParameters governor;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
@@ -65,9 +68,15 @@ struct Parameters {
              .min = 1.0,
              .max = 1000.0},
             heartbeat_rate_hz);
+    v.visit({.name = "govern_speed",
+             .description = "whether the robot is asked for the speed at which the axes keep up "
+                            "with the weeds ahead, speed_mps or less, and plans hold for that"},
+            govern_speed);
     planner.visit(v);
     PrefixedVisitor harmfulness_visitor(v, "harmfulness_");
     harmfulness.visit(harmfulness_visitor);
+    PrefixedVisitor governor_visitor(v, "governor_");
+    governor.visit(governor_visitor);
   }
 };
 
@@ -123,6 +132,14 @@ std::vector<planning::AxisSpec> specs(const std::vector<LateralAxis>& axes) {
   return list;
 }
 
+const Parameters& checked(const Parameters& parameters) {
+  if (parameters.govern_speed &&
+      (parameters.planner.view != "rolling" || parameters.planner.fire_while_moving)) {
+    throw ConfigError("govern_speed needs the rolling view, without fire_while_moving");
+  }
+  return parameters;
+}
+
 /// The hindmost x in the base frame that the camera still sees: plants behind it have been seen.
 double camera_rear_x_m(const geometry::ToolModel& tool) {
   if (tool.cameras.empty()) return 0.0;
@@ -166,7 +183,8 @@ class PlannerComponent final : public graph::Component {
         .input<topics::RobotOdometry>()
         .input<topics::AxisState>(graph::Need::kOptional)
         .output<topics::Plan>()
-        .output<topics::PlannerHeartbeat>();
+        .output<topics::PlannerHeartbeat>()
+        .output<topics::SpeedRequest>();
   }
 
   explicit PlannerComponent(graph::Context& context)
@@ -176,7 +194,9 @@ class PlannerComponent final : public graph::Component {
         axes_(lateral_axes(tool_)),
         seen_x_m_(camera_rear_x_m(tool_)),
         harmfulness_(with_species(parameters_.harmfulness, parameters_.species_file)),
-        view_(planning::make_observation_view(parameters_.planner, specs(axes_))),
+        view_(planning::make_observation_view(checked(parameters_).planner, specs(axes_))),
+        speed_requests_(context, parameters_.govern_speed, parameters_.governor,
+                        parameters_.planner.speed_mps, specs(axes_)),
         out_(context.output<topics::Plan>()),
         heartbeat_out_(context.output<topics::PlannerHeartbeat>()) {
     context.input<topics::RobotOdometry>([this](const auto& message) {
@@ -208,6 +228,7 @@ class PlannerComponent final : public graph::Component {
       context_.health(graph::HealthLevel::kWarn, moved.error().message);
       return;
     }
+    speed_requests_.consider(robot, *view_);
     const auto planned = view_->replan();
     if (!planned.ok()) {
       context_.count("no_plan");
@@ -230,6 +251,11 @@ class PlannerComponent final : public graph::Component {
     message.sender(context_.name());
     message.count(++beats_);
     heartbeat_out_.publish(std::move(message));
+    // Without a pose nothing is asked, and the robot goes by its own speed.
+    if (const auto base = poses_.at(now, Duration::seconds(parameters_.max_pose_age_s));
+        base.ok()) {
+      speed_requests_.publish(*base);
+    }
     if (last_tracks_ && (now - *last_tracks_).to_seconds() > parameters_.max_tracks_age_s) {
       context_.count("tracks_missing");
       context_.health(graph::HealthLevel::kWarn, "no tracks come: the targets are stale");
@@ -379,6 +405,7 @@ class PlannerComponent final : public graph::Component {
   double seen_x_m_;
   planning::HarmfulnessModel harmfulness_;
   std::unique_ptr<planning::ObservationView> view_;
+  SpeedRequests speed_requests_;
   graph::Output<topics::Plan> out_;
   graph::Output<topics::PlannerHeartbeat> heartbeat_out_;
   std::uint64_t beats_ = 0;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "furrow_components/conversions.hpp"
@@ -27,6 +28,8 @@ struct Parameters {
   double rate_hz = 100.0;
   double imu_rate_hz = 100.0;
   double gnss_rate_hz = 5.0;
+  bool follow_speed_requests = false;
+  double speed_request_timeout_s = 0.5;
   simulation::RobotMotionParameters motion;
   simulation::WheelOdometryParameters wheel;
   simulation::ImuParameters imu;
@@ -68,6 +71,17 @@ struct Parameters {
              .min = 0.1,
              .max = 100.0},
             gnss_rate_hz);
+    v.visit(
+        {.name = "follow_speed_requests",
+         .description = "whether the robot drives as slowly as the tool asks; never faster than "
+                        "its own speed"},
+        follow_speed_requests);
+    v.visit({.name = "speed_request_timeout_s",
+             .unit = "s",
+             .description = "without a newer request the robot goes back to its own speed",
+             .min = 0.02,
+             .max = 60.0},
+            speed_request_timeout_s);
     motion.visit(v);
     PrefixedVisitor wheel_visitor(v, "wheel_");
     wheel.visit(wheel_visitor);
@@ -108,6 +122,7 @@ class RobotSimulator final : public graph::Component {
         .parameters<Parameters>()
         .input<topics::AxisEvent>(graph::Need::kOptional)
         .input<topics::TrueField>(graph::Need::kOptional)
+        .input<topics::SpeedRequest>(graph::Need::kOptional)
         .output<topics::TrueOdometry>()
         .output<topics::WheelOdometry>()
         .output<topics::Imu>()
@@ -136,6 +151,7 @@ class RobotSimulator final : public graph::Component {
       length_m_ = std::min(parameters_.length_m, field->length_m());
     });
     context.input<topics::AxisEvent>([this](const auto& event) { landing_.take(*event); });
+    context.input<topics::SpeedRequest>([this](const auto& request) { take(*request); });
     context.every(Duration::seconds(1.0 / parameters_.rate_hz), [this](Time now) { step(now); });
     context.every(Duration::seconds(1.0 / parameters_.imu_rate_hz),
                   [this](Time now) { measure_turning(now); });
@@ -144,12 +160,39 @@ class RobotSimulator final : public graph::Component {
   }
 
  private:
+  void take(const geometry_msgs::msg::TwistStamped& request) {
+    if (!parameters_.follow_speed_requests) return;
+    const double speed_mps = request.twist().linear().x();
+    if (!std::isfinite(speed_mps) || speed_mps < 0.0) {
+      context_.count("bad_speed_requests");
+      return;
+    }
+    asked_ = {graph::from_msg(request.header().stamp()), speed_mps};
+  }
+
+  // A tool that fell silent holds nobody up, nor does one whose clock is another.
+  void follow_request(Time now) {
+    if (!parameters_.follow_speed_requests || !asked_) return;
+    const Duration timeout = Duration::seconds(parameters_.speed_request_timeout_s);
+    const bool fresh = now - asked_->stamp <= timeout && asked_->stamp - now <= timeout;
+    motion_->limit_speed(fresh ? std::optional(asked_->speed_mps) : std::nullopt);
+    if (fresh != request_lost_) return;
+    request_lost_ = !fresh;
+    if (request_lost_) {
+      context_.count("speed_requests_lost");
+      context_.health(graph::HealthLevel::kWarn, "no speed is asked for: back to the own one");
+    } else {
+      context_.health(graph::HealthLevel::kOk, "");
+    }
+  }
+
   void step(Time now) {
     if (motion_ == nullptr) {
       motion_ = std::make_unique<simulation::RobotMotion>(parameters_.motion, context_.seed(), now);
       reckoned_ = motion_->state().X_FB;
       last_ = now;
     }
+    follow_request(now);
     const simulation::RobotState& state = motion_->advance_to(now);
     nav_msgs::msg::Odometry truth =
         to_msg(BaseOdometry{now, state.X_FB, state.speed_mps, state.yaw_rate_radps}, kFieldFrame);
@@ -235,6 +278,11 @@ class RobotSimulator final : public graph::Component {
     status_out_.publish(std::move(status));
   }
 
+  struct SpeedRequest {
+    Time stamp;
+    double speed_mps = 0.0;
+  };
+
   graph::Context& context_;
   Parameters parameters_;
   SprayLanding landing_;
@@ -249,6 +297,8 @@ class RobotSimulator final : public graph::Component {
   simulation::Gnss gnss_;
   std::deque<simulation::GnssReading> positions_;  ///< measured, not yet handed out
   std::unique_ptr<simulation::RobotMotion> motion_;
+  std::optional<SpeedRequest> asked_;
+  bool request_lost_ = false;
   geometry::Pose2 reckoned_;
   Time last_;
   double length_m_ = 0.0;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -31,11 +32,13 @@ const std::vector<std::string> kAxes = {"axis_1", "axis_2", "axis_3", "axis_4"};
 /// What the planner is given, and what it said.
 struct World {
   double seconds = 1.0;
+  bool follow = false;        ///< the robot does as it is asked
   std::vector<Track> tracks;  ///< shown while they are within sight
   std::function<bool(const std::string&, double)> faulty = [](const auto&, double) {
     return false;
   };
   std::vector<Plan> plans;
+  std::vector<geometry_msgs::msg::TwistStamped> speed_requests;
 
   /// The last that was decided of each track.
   [[nodiscard]] std::map<std::int64_t, furrow_msgs::msg::Decision> decisions() const {
@@ -73,17 +76,22 @@ class Feeder final : public graph::Component {
         odometry_out_(context.output<topics::RobotOdometry>()),
         axis_out_(context.output<topics::AxisState>()) {
     context.every(Duration::milliseconds(10), [this, &context](Time now) {
+      x_m_ = world_.follow ? x_m_ + 0.01 * speed_mps_ : kSpeed_mps * now.to_seconds();
       odometry_out_.publish(
-          to_msg(BaseOdometry{now, {kSpeed_mps * now.to_seconds(), 0.0, 0.0}, kSpeed_mps, 0.0},
-                 kFieldFrame));
+          to_msg(BaseOdometry{now, {x_m_, 0.0, 0.0}, speed_mps_, 0.0}, kFieldFrame));
       if (now.to_seconds() >= world_.seconds) context.request_stop("finished");
     });
     context.every(Duration::milliseconds(100), [this](Time now) { show(now); });
     context.input<topics::Plan>([this](const auto& plan) { world_.plans.push_back(*plan); });
+    context.input<topics::SpeedRequest>([this](const auto& request) {
+      world_.speed_requests.push_back(*request);
+      if (world_.follow) speed_mps_ = request->twist().linear().x();
+    });
   }
 
   static void describe(graph::Description& d) {
     d.input<topics::Plan>()
+        .input<topics::SpeedRequest>()
         .output<topics::Tracks>()
         .output<topics::RobotOdometry>()
         .output<topics::AxisState>();
@@ -98,17 +106,18 @@ class Feeder final : public graph::Component {
       state.fault(world_.faulty(axis, now.to_seconds()) ? "following_error" : "");
       axis_out_.publish(std::move(state));
     }
-    const double x_m = kSpeed_mps * now.to_seconds();
     furrow_msgs::msg::Tracks message;
     message.header(header(now, kFieldFrame));
     for (const Track& track : world_.tracks) {
-      const double ahead_m = track.position().x() - x_m;
+      const double ahead_m = track.position().x() - x_m_;
       if (!(ahead_m < -1.0 || ahead_m > 1.75)) message.tracks().push_back(track);
     }
     tracks_out_.publish(std::move(message));
   }
 
   World& world_;
+  double x_m_ = 0.0;
+  double speed_mps_ = kSpeed_mps;
   graph::Output<topics::Tracks> tracks_out_;
   graph::Output<topics::RobotOdometry> odometry_out_;
   graph::Output<topics::AxisState> axis_out_;
@@ -242,6 +251,67 @@ TEST(PlannerComponent, TreatsWeedsThatAreNotConfirmedWhereThatIsAskedFor) {
       EXPECT_EQ(decisions.at(2).decision(), "treat");
     }
   }
+}
+
+/// Weeds in a line across the row, more than four axes can reach at once at any but a low speed.
+std::vector<Track> line_across(double x_m) {
+  std::vector<Track> weeds;
+  for (int i = 0; i < 11; ++i) weeds.push_back(weed(i + 1, x_m + 0.003 * i, 0.12 * (i - 5)));
+  return weeds;
+}
+
+TEST(PlannerComponent, AsksForTheRobotsSpeedOnlyWhereItIsToGovern) {
+  World world;
+  world.seconds = 3.0;
+  world.tracks = line_across(3.0);
+  run(world, {{"kinematics", std::string("trapezoid")}});
+  EXPECT_TRUE(world.speed_requests.empty());
+}
+
+TEST(PlannerComponent, AsksTheRobotToSlowForWhatTheAxesWouldNotReach) {
+  const std::map<std::string, ParameterValue> parameters = {
+      {"govern_speed", true},
+      {"kinematics", std::string("trapezoid")},
+      {"governor_min_speed_mps", 0.1},
+      {"governor_acceleration_mps2", 0.3}};
+  World world;
+  world.seconds = 12.0;
+  world.follow = true;
+  world.tracks = line_across(2.0);
+  run(world, parameters);
+  ASSERT_FALSE(world.speed_requests.empty());
+  double before_mps = kSpeed_mps;
+  double least_mps = kSpeed_mps;
+  for (const auto& request : world.speed_requests) {
+    const double asked_mps = request.twist().linear().x();
+    EXPECT_EQ(request.header().frame_id(), kBaseFrame);
+    EXPECT_GE(asked_mps, 0.1 - 1e-9);
+    EXPECT_LE(asked_mps, kSpeed_mps + 1e-9);
+    EXPECT_LE(std::abs(asked_mps - before_mps), 1.2 * 0.3 * 0.02) << "at 50 Hz";
+    before_mps = asked_mps;
+    least_mps = std::min(least_mps, asked_mps);
+  }
+  EXPECT_LT(least_mps, 0.4);
+  EXPECT_EQ(world.speed_requests.front().twist().linear().x(), kSpeed_mps);
+  EXPECT_NEAR(world.speed_requests.back().twist().linear().x(), kSpeed_mps, 1e-9)
+      << "the weeds are past";
+  for (const auto& [id, decision] : world.decisions()) EXPECT_EQ(decision.decision(), "treat");
+
+  // One that does as it likes is asked all the same, but not relied upon.
+  world.follow = false;
+  world.plans.clear();
+  run(world, parameters);
+  int left = 0;
+  for (const auto& [id, decision] : world.decisions()) {
+    left += decision.decision() == "unreachable" ? 1 : 0;
+  }
+  EXPECT_GT(left, 0);
+}
+
+TEST(PlannerComponent, DoesNotGovernWithTheSegmentViewOrSpraysInPassing) {
+  World world;
+  EXPECT_THROW(run(world, {{"govern_speed", true}, {"view", std::string("segment")}}), ConfigError);
+  EXPECT_THROW(run(world, {{"govern_speed", true}, {"fire_while_moving", true}}), ConfigError);
 }
 
 TEST(PlannerComponent, NothingInSightIsAnEmptyPlan) {
