@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct Parameters {
   double length_m = 20.0;
   double camera_rate_hz = 5.0;
   bool render = true;
+  bool true_masks = false;
   std::string photos_folder;
   double photo_resolution_mm_per_px = 1.0;
   std::int64_t photo_quarter_turns = 0;
@@ -51,6 +53,10 @@ struct Parameters {
     v.visit({.name = "render",
              .description = "false: no images, only what a perfect detector would tell"},
             render);
+    v.visit({.name = "true_masks",
+             .description = "whether the truth of a rendered image holds what it shows of each "
+                            "plant: mask and its box, empty where it shows nothing"},
+            true_masks);
     v.visit({.name = "photos_folder",
              .description = "annotated photographs as the ground (CWFID or Carrot-Weed as they are "
                             "published); empty: the ground is rendered"},
@@ -139,9 +145,13 @@ class CameraSimulator final : public graph::Component {
  private:
   void expose(const BaseOdometry& base) {
     const Eigen::Isometry3d X_FC = geometry::to_isometry(base.X_FB) * tool_.cameras.front().X_BC;
-    truth_.publish(true_instances(base.stamp, X_FC));
-    if (!parameters_.render) return;
+    if (!parameters_.render) {
+      truth_.publish(true_instances(base.stamp, X_FC, nullptr));
+      return;
+    }
     const simulation::Frame frame = scene_->render(*camera_, X_FC, frames_);
+    truth_.publish(
+        true_instances(base.stamp, X_FC, parameters_.true_masks ? &frame.plant_index : nullptr));
     info_.publish(to_msg(camera_->intrinsics(), base.stamp));
     depth_.publish(to_msg(frame.depth_m, base.stamp, kCameraFrame));
     image_.publish(to_msg(frame.bgr, base.stamp, kCameraFrame));
@@ -149,14 +159,17 @@ class CameraSimulator final : public graph::Component {
   }
 
   // Plants stand in the order of x: only the stretch under the camera is looked at.
-  [[nodiscard]] furrow_msgs::msg::PlantInstances true_instances(
-      Time stamp, const Eigen::Isometry3d& X_FC) const {
+  [[nodiscard]] furrow_msgs::msg::PlantInstances true_instances(Time stamp,
+                                                                const Eigen::Isometry3d& X_FC,
+                                                                const cv::Mat* plant_index) const {
     furrow_msgs::msg::PlantInstances message;
     message.header(header(stamp, kCameraFrame));
     const auto& plants = scene_->field().plants;
     const Eigen::Isometry3d X_CF = X_FC.inverse();
     const double centre_x_m = X_FC.translation().x();
     constexpr double kReach_m = 3.0;
+    const auto shown =
+        plant_index == nullptr ? std::map<std::int32_t, cv::Rect>() : boxes_of_plants(*plant_index);
     const auto x_of = [](const field::Plant& plant) { return plant.p_F_m.x(); };
     const auto first = std::ranges::lower_bound(plants, centre_x_m - kReach_m, {}, x_of);
     for (auto plant = first; plant != plants.end() && plant->p_F_m.x() < centre_x_m + kReach_m;
@@ -165,8 +178,36 @@ class CameraSimulator final : public graph::Component {
       const auto pixel = camera_->project(p_C);
       if (!pixel || !camera_->in_image(*pixel)) continue;
       message.instances().push_back(true_instance(*plant, p_C, *pixel));
+      if (plant_index != nullptr) {
+        const auto index = static_cast<std::int32_t>(plant - plants.begin());
+        const auto box = shown.find(index);
+        show(box == shown.end() ? cv::Rect() : box->second, index, *plant_index,
+             message.instances().back());
+      }
     }
     return message;
+  }
+
+  static std::map<std::int32_t, cv::Rect> boxes_of_plants(const cv::Mat& plant_index) {
+    std::map<std::int32_t, cv::Rect> boxes;
+    for (int v = 0; v < plant_index.rows; ++v) {
+      const auto* row = plant_index.ptr<std::int32_t>(v);
+      for (int first = 0, end = 0; first < plant_index.cols; first = end) {
+        end = first + 1;
+        while (end < plant_index.cols && row[end] == row[first]) ++end;
+        if (row[first] >= 0) boxes[row[first]] |= cv::Rect(first, v, end - first, 1);
+      }
+    }
+    return boxes;
+  }
+
+  static void show(const cv::Rect& box, std::int32_t index, const cv::Mat& plant_index,
+                   furrow_msgs::msg::PlantInstance& instance) {
+    instance.box().x_offset(static_cast<std::uint32_t>(box.x));
+    instance.box().y_offset(static_cast<std::uint32_t>(box.y));
+    instance.box().width(static_cast<std::uint32_t>(box.width));
+    instance.box().height(static_cast<std::uint32_t>(box.height));
+    if (!box.empty()) instance.mask_runs(mask_runs(plant_index(box) == index));
   }
 
   [[nodiscard]] furrow_msgs::msg::PlantInstance true_instance(const field::Plant& plant,

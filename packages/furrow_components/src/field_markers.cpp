@@ -72,7 +72,8 @@ void make_disc(Marker& marker, const geometry_msgs::msg::Point& centre, double r
 
 }  // namespace
 
-FieldMarkers::FieldMarkers(const geometry::ToolModel& tool) {
+FieldMarkers::FieldMarkers(const geometry::ToolModel& tool, double crop_threshold)
+    : crop_threshold_(crop_threshold) {
   for (std::size_t i = 0; i < tool.axes.size(); ++i) {
     axes_[tool.axes[i].name] = {i, tool.axes[i].nozzle.footprint_radius_m};
   }
@@ -102,7 +103,7 @@ MarkerArray FieldMarkers::plants(const furrow_msgs::msg::Tracks& message) {
 
 ColorRGBA FieldMarkers::plant_color(const Track& track) const {
   const float alpha = track.confirmed() ? kSolid : kTentative;
-  if (track.crop_probability() > 0.5) return color(ledger::palette::kCrop, alpha);
+  if (track.crop_probability() >= crop_threshold_) return color(ledger::palette::kCrop, alpha);
   const auto decided = decisions_.find(track.id());
   if (decided == decisions_.end()) return color(ledger::palette::kTreated, alpha);
   // What is to be treated stands out, in the colour that the map has for what was missed.

@@ -18,8 +18,8 @@ class FieldMarkers {
  public:
   static constexpr std::int32_t kMaxSprays = 2000;
 
-  /// The model is copied from.
-  explicit FieldMarkers(const geometry::ToolModel& tool);
+  /// The model is copied from. Tracks at or above the threshold are drawn as crop.
+  explicit FieldMarkers(const geometry::ToolModel& tool, double crop_threshold = 0.5);
 
   /// Every track that has not ended, in namespace "plants"; those that were there before and are
   /// not any more are deleted.
@@ -39,6 +39,7 @@ class FieldMarkers {
     std::size_t index = 0;
     double footprint_radius_m = 0.0;
   };
+  double crop_threshold_;
   std::map<std::string, Axis> axes_;
   std::map<std::int64_t, std::string> decisions_;  ///< of the tracks of the newest plan
   std::set<std::int32_t> drawn_plants_;

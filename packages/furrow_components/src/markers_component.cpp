@@ -10,20 +10,37 @@ namespace {
 
 namespace topics = msgs::topics;
 
+struct Parameters {
+  ToolFileParameters tool;
+  double crop_threshold = 0.5;
+
+  void visit(ParameterVisitor& v) {
+    tool.visit(v);
+    v.visit({.name = "crop_threshold",
+             .description = "tracks at or above this probability are drawn as crop: the planner's",
+             .min = 0.0,
+             .max = 1.0},
+            crop_threshold);
+  }
+};
+
 /// Shows plants, plan and sprays to viewers of ROS 2.
 class Markers final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
     d.doc("Draws plants, plan and sprays for RViz.")
-        .parameters<ToolFileParameters>()
+        .parameters<Parameters>()
         .input<topics::Tracks>()
         .input<topics::Plan>(graph::Need::kOptional)
         .input<topics::AxisEvent>(graph::Need::kOptional)
         .output<topics::Markers>();
   }
 
-  explicit Markers(graph::Context& context)
-      : markers_(geometry::load_tool_model(context.parameters<ToolFileParameters>().tool_file)),
+  explicit Markers(graph::Context& context) : Markers(context, context.parameters<Parameters>()) {}
+
+ private:
+  Markers(graph::Context& context, const Parameters& parameters)
+      : markers_(geometry::load_tool_model(parameters.tool.tool_file), parameters.crop_threshold),
         out_(context.output<topics::Markers>()) {
     context.input<topics::Tracks>(
         [this](const auto& message) { publish(markers_.plants(*message)); });
@@ -32,7 +49,6 @@ class Markers final : public graph::Component {
         [this](const auto& message) { publish(markers_.spray(*message)); });
   }
 
- private:
   void publish(visualization_msgs::msg::MarkerArray markers) const {
     if (!markers.markers().empty()) out_.publish(std::move(markers));
   }

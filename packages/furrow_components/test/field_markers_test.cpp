@@ -83,6 +83,14 @@ TEST(FieldMarkers, CropTreatedAndSparedWeedsAreToldApart) {
   EXPECT_LT(array.markers()[4].color().a(), array.markers()[3].color().a());
 }
 
+TEST(FieldMarkers, CropBeginsAtTheThreshold) {
+  // At 0.3 the second is crop too, the third is not.
+  FieldMarkers markers(two_axes(), 0.3);
+  const auto array = markers.plants(tracks({track(1, 0.9), track(2, 0.3), track(3, 0.29)}));
+  EXPECT_EQ(rgb(array.markers()[0]), rgb(array.markers()[1]));
+  EXPECT_NE(rgb(array.markers()[0]), rgb(array.markers()[2]));
+}
+
 TEST(FieldMarkers, WhatIsGoneIsDeletedOnce) {
   FieldMarkers markers(two_axes());
   (void)markers.plants(tracks({track(1, 0.0), track(2, 0.0)}));

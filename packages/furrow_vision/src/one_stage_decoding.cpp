@@ -200,7 +200,9 @@ class Decoder {
     struct Sum {
       int cells = 0;
       double plant = 0.0;
+      double evidence = 0.0;
     };
+    const cv::Mat evidence = plant_evidence(maps_, parameters_);
     std::vector<Sum> sums(most);
     std::vector<double> logits(most * classes, 0.0);
     for (int v = 0; v < labels_.rows; ++v) {
@@ -211,6 +213,7 @@ class Decoder {
         const double plant = sigmoid(maps_.plant_logit.at<float>(v, u));
         ++sums[i].cells;
         sums[i].plant += plant;
+        sums[i].evidence += sigmoid(evidence.at<float>(v, u));
         for (std::size_t k = 0; k < classes; ++k) {
           logits[i * classes + k] += plant * maps_.class_logits[k].at<float>(v, u);
         }
@@ -223,7 +226,7 @@ class Decoder {
       const StemPeak& stem = i < stems_.size() ? stems_[i] : own_[i - stems_.size()];
       DecodedPlant plant{.stem_px = stem.stem_px,
                          .stem_probability = stem.probability,
-                         .plant_probability = sums[i].plant / sums[i].cells,
+                         .plant_probability = sums[i].evidence / sums[i].cells,
                          .class_scores = {},
                          .cells = sums[i].cells};
       const double weight = std::max(sums[i].plant, 1e-12);
@@ -273,6 +276,11 @@ void OneStageDecodingParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 500.0},
           stem_separation_mm);
+  v.visit({.name = "stem_evidence",
+           .description = "Log-odds that a stem speaks more for a plant than for itself",
+           .min = -100.0,
+           .max = 100.0},
+          stem_evidence);
   v.visit({.name = "vote_radius_mm",
            .unit = "mm",
            .description = "How far from a stem a cell may point to be its plant's",
@@ -365,6 +373,12 @@ std::vector<StemPeak> find_stems(const OneStageMaps& maps, const CellGrid& grid,
     if (alone) kept.push_back(peak);
   }
   return kept;
+}
+
+cv::Mat plant_evidence(const OneStageMaps& maps, const OneStageDecodingParameters& parameters) {
+  cv::Mat evidence;
+  cv::max(maps.plant_logit, maps.stem_logit + parameters.stem_evidence, evidence);
+  return evidence;
 }
 
 DecodedPlants decode_one_stage(const OneStageMaps& maps, const cv::Mat& vegetation,

@@ -38,7 +38,8 @@ class OneStageDetector::Implementation {
                         mm_per_px / std::sqrt(input_per_px.x * input_per_px.y)};
 
     const Vegetation vegetation = segment_vegetation(view.bgr, parameters_.vegetation.index);
-    const cv::Mat mask = fuse_vegetation(maps->plant_logit, vegetation, parameters_.vegetation);
+    const cv::Mat mask = fuse_vegetation(plant_evidence(*maps, parameters_.decoding), vegetation,
+                                         parameters_.vegetation);
     cv::Mat cells;
     cv::resize(mask, cells, maps->plant_logit.size(), 0.0, 0.0,
                mask.cols >= maps->plant_logit.cols ? cv::INTER_AREA : cv::INTER_LINEAR);

@@ -107,6 +107,22 @@ TEST_F(Decoding, SpecksAreDropped) {
   EXPECT_EQ(decode().plants.size(), 1u);
 }
 
+TEST_F(Decoding, AStemSpeaksForItsPlant) {
+  // A seedling of two cells: its stem is seen, of its leaves the network is undecided.
+  draw({4, 4, 2, 1}, {17.5, 17.5}, 2.0f, -2.0f);
+  maps_.plant_logit(cv::Rect(4, 4, 2, 1)).setTo(-1.0);
+  parameters_.min_plant_area_mm2 = 0.0;
+  parameters_.stem_evidence = 1.5;
+  const cv::Mat evidence = plant_evidence(maps_, parameters_);
+  EXPECT_FLOAT_EQ(evidence.at<float>(4, 4), 3.5f);
+  EXPECT_FLOAT_EQ(evidence.at<float>(4, 5), -1.0f);
+  EXPECT_FLOAT_EQ(evidence.at<float>(0, 0), -4.5f);  // soil
+  const DecodedPlants decoded = decode();
+  ASSERT_EQ(decoded.plants.size(), 1u);
+  const double expected = 0.5 / (1.0 + std::exp(-3.5)) + 0.5 / (1.0 + std::exp(1.0));
+  EXPECT_NEAR(decoded.plants[0].plant_probability, expected, 1e-6);
+}
+
 TEST_F(Decoding, KeepsTheStrongerOfTwoStemsThatAreTooNear) {
   maps_.stem_logit.at<float>(5, 5) = 1.0f;
   maps_.stem_logit.at<float>(5, 8) = 2.0f;  // 12 px, 12 mm

@@ -29,6 +29,7 @@ struct OneStageMaps {
 struct OneStageDecodingParameters {
   double stem_threshold = 0.3;
   double stem_separation_mm = 8.0;
+  double stem_evidence = 1.5;
   double vote_radius_mm = 14.0;
   double vote_radius_factor = 0.35;
   double min_plant_area_mm2 = 20.0;
@@ -54,10 +55,16 @@ constexpr int kMaxStems = 4000;
 [[nodiscard]] std::vector<StemPeak> find_stems(const OneStageMaps& maps, const CellGrid& grid,
                                                const OneStageDecodingParameters& parameters);
 
+/// Log-odds of a plant in each cell: those of the plant map or, where they are greater, those of
+/// the stem map plus stem_evidence. Of a seedling the size of a cell the network often knows the
+/// stem, and is undecided about the leaves.
+[[nodiscard]] cv::Mat plant_evidence(const OneStageMaps& maps,
+                                     const OneStageDecodingParameters& parameters);
+
 struct DecodedPlant {
   Eigen::Vector2d stem_px = Eigen::Vector2d::Zero();  ///< in the input; may lie outside
   double stem_probability = 0.0;     ///< of its peak; of the map at the stem where there was none
-  double plant_probability = 0.0;    ///< mean over its cells
+  double plant_probability = 0.0;    ///< mean over its cells, by plant_evidence()
   std::vector<double> class_scores;  ///< sum to 1
   int cells = 0;
 };
