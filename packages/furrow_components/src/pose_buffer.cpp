@@ -13,9 +13,23 @@ Status PoseBuffer::add(const BaseOdometry& odometry) {
   if (!poses_.empty() && odometry.stamp <= poses_.back().stamp) {
     return Error{ErrorCode::kStale, "odometry goes back in time"};
   }
+  if (is_astray(odometry.stamp)) return Error{ErrorCode::kStale, "odometry jumps ahead in time"};
   poses_.push_back(odometry);
   while (poses_.front().stamp + memory_ < odometry.stamp) poses_.pop_front();
   return {};
+}
+
+bool PoseBuffer::is_astray(Time stamp) {
+  if (poses_.empty() || stamp <= poses_.back().stamp + memory_) {
+    astray_count_ = 0;
+    return false;
+  }
+  const bool goes_on = astray_count_ > 0 && stamp > astray_ && stamp <= astray_ + memory_;
+  astray_count_ = goes_on ? astray_count_ + 1 : 1;
+  astray_ = stamp;
+  if (astray_count_ < kAgreeing) return true;
+  astray_count_ = 0;
+  return false;
 }
 
 Result<BaseOdometry> PoseBuffer::at(Time stamp, Duration ahead) const {

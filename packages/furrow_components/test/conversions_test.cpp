@@ -127,5 +127,29 @@ TEST(PoseBuffer, RefusesWhatGoesBackAndWhatIsNotFinite) {
             ErrorCode::kInvalidArgument);
 }
 
+TEST(PoseBuffer, AStampFarAheadShutsNobodyOut) {
+  PoseBuffer buffer(Duration::seconds(1.0));
+  ASSERT_TRUE(buffer.add({Time::from_seconds(1.0), {1, 0, 0}, 0, 0}).ok());
+  EXPECT_EQ(buffer.add({Time::from_seconds(1e6), {9, 0, 0}, 0, 0}).error().code, ErrorCode::kStale);
+  ASSERT_TRUE(buffer.add({Time::from_seconds(1.5), {2, 0, 0}, 0, 0}).ok());
+  EXPECT_NEAR(buffer.at(Time::from_seconds(1.25))->X_FB.x_m, 1.5, 1e-12);
+}
+
+TEST(PoseBuffer, GoesOnAfterAGap) {
+  PoseBuffer buffer(Duration::seconds(1.0));
+  ASSERT_TRUE(buffer.add({Time::from_seconds(1.0), {}, 0, 0}).ok());
+  for (int i = 1; i < PoseBuffer::kAgreeing; ++i) {
+    EXPECT_FALSE(buffer.add({Time::from_seconds(60.0 + 0.02 * i), {}, 0, 0}).ok());
+  }
+  // Another wrong stamp begins the count anew.
+  EXPECT_FALSE(buffer.add({Time::from_seconds(1e6), {}, 0, 0}).ok());
+  for (int i = 1; i < PoseBuffer::kAgreeing; ++i) {
+    EXPECT_FALSE(buffer.add({Time::from_seconds(61.0 + 0.02 * i), {}, 0, 0}).ok());
+  }
+  ASSERT_TRUE(buffer.add({Time::from_seconds(61.5), {5, 0, 0}, 0, 0}).ok());
+  EXPECT_DOUBLE_EQ(buffer.newest().X_FB.x_m, 5.0);
+  EXPECT_FALSE(buffer.at(Time::from_seconds(30.0)).ok());
+}
+
 }  // namespace
 }  // namespace furrow::components
