@@ -57,11 +57,12 @@ void load_shipped(ReplayOptions& replay) {
 
 void print(const std::vector<TrackingRow>& rows) {
   std::vector<std::vector<std::string>> table = {
-      {"field", "association", "localization", "NAE crop %", "NAE weed %", "MOTA", "IDF1", "HOTA",
-       "switches", "stem p95 mm", "pose rms mm"}};
+      {"field", "association", "localization", "NAE crop %", "NAE weed %", "of all: crop %",
+       "weed %", "MOTA", "IDF1", "HOTA", "switches", "stem p95 mm", "pose rms mm"}};
   for (const TrackingRow& row : rows) {
     table.push_back({row.field, row.association, row.localization, number(row.nae_crop_pct, 1),
-                     number(row.nae_weed_pct, 1), number(row.mota, 3), number(row.idf1, 3),
+                     number(row.nae_weed_pct, 1), number(row.nae_crop_all_pct, 1),
+                     number(row.nae_weed_all_pct, 1), number(row.mota, 3), number(row.idf1, 3),
                      number(row.hota, 3), std::to_string(row.id_switches),
                      number(row.stem_p95_mm, 1), number(row.pose_rms_mm, 1)});
   }

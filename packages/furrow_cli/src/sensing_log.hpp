@@ -23,6 +23,8 @@ struct SensingLog {
 
   field::FieldModel field;
   std::vector<components::BaseOdometry> truth;  ///< in the order of time
+  /// Beside field.plants: the most pixels that one image shows of the plant, its stem in the image.
+  std::vector<std::int64_t> most_visible_px;
   std::vector<Event> events;
 };
 

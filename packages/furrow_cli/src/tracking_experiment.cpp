@@ -13,21 +13,33 @@
 namespace furrow::cli {
 namespace {
 
+/// Of several logs, one value for each.
+struct Counts {
+  std::vector<std::int64_t> all;
+  std::vector<std::int64_t> visible;
+  std::vector<std::int64_t> counted;
+  void add(const PlantCounts& counts) {
+    all.push_back(counts.all);
+    visible.push_back(counts.visible);
+    counted.push_back(counts.counted);
+  }
+};
+
 /// Results of several logs under one choice, summed up.
 class Pool {
  public:
-  void add(const SensingLog& log, const ReplayResult& result) {
-    crops_true_.push_back(result.crops_true);
-    crops_counted_.push_back(result.crops_counted);
-    weeds_true_.push_back(result.weeds_true);
-    weeds_counted_.push_back(result.weeds_counted);
+  void add(const ReplayResult& result) {
+    crops_.add(result.crops);
+    weeds_.add(result.weeds);
     const auto weight = static_cast<double>(result.scores.truth_points);
     weight_ += weight;
     mota_ += weight * result.scores.mota;
     idf1_ += weight * result.scores.idf1;
     hota_ += weight * result.scores.hota;
     row_.id_switches += result.scores.id_switches;
-    row_.plants += static_cast<std::int64_t>(log.field.plants.size());
+    row_.plants += result.crops.all + result.weeds.all;
+    row_.plants_visible += result.crops.visible + result.weeds.visible;
+    row_.plants_located += static_cast<std::int64_t>(result.stem_errors_mm.size());
     row_.frames += static_cast<std::int64_t>(result.position_errors_mm.size());
     row_.frames_without_pose += result.frames_without_pose;
     append(stems_, result.stem_errors_mm);
@@ -41,8 +53,10 @@ class Pool {
     row.field = field;
     row.association = association;
     row.localization = to_string(pose);
-    row.nae_crop_pct = tracking::count_nae_pct(crops_true_, crops_counted_).value();
-    row.nae_weed_pct = tracking::count_nae_pct(weeds_true_, weeds_counted_).value();
+    row.nae_crop_pct = tracking::count_nae_pct(crops_.visible, crops_.counted).value();
+    row.nae_weed_pct = tracking::count_nae_pct(weeds_.visible, weeds_.counted).value();
+    row.nae_crop_all_pct = tracking::count_nae_pct(crops_.all, crops_.counted).value();
+    row.nae_weed_all_pct = tracking::count_nae_pct(weeds_.all, weeds_.counted).value();
     row.mota = mota_ / weight_;
     row.idf1 = idf1_ / weight_;
     row.hota = hota_ / weight_;
@@ -73,10 +87,8 @@ class Pool {
   double mota_ = 0.0;
   double idf1_ = 0.0;
   double hota_ = 0.0;
-  std::vector<std::int64_t> crops_true_;
-  std::vector<std::int64_t> crops_counted_;
-  std::vector<std::int64_t> weeds_true_;
-  std::vector<std::int64_t> weeds_counted_;
+  Counts crops_;
+  Counts weeds_;
   std::vector<double> stems_;
   std::vector<double> positions_;
   std::vector<double> headings_;
@@ -127,8 +139,8 @@ std::vector<TrackingRow> run(const TrackingExperiment& experiment, const ShareDo
           replay.tracker.association = experiment.associations[a];
           replay.observation.footprints = replay.tracker.association == "iou";
           const ReplayResult result = replay_tracking(log, tool.cameras.front(), replay);
-          pools[{a, p}].add(log, result);
-          all[{a, p}].add(log, result);
+          pools[{a, p}].add(result);
+          all[{a, p}].add(result);
         }
       }
       done += 1.0;

@@ -30,13 +30,19 @@ struct TrackingRow {
   std::string field;
   std::string association;
   std::string localization;
+  /// Of counts, against the plants that an image shows components::kLeastVisible_px of or more,
+  /// which are those that a person could mark; and against all that stand in the field.
   double nae_crop_pct = 0.0;
   double nae_weed_pct = 0.0;
+  double nae_crop_all_pct = 0.0;
+  double nae_weed_all_pct = 0.0;
   double mota = 0.0;
   double idf1 = 0.0;
   double hota = 0.0;
   std::int64_t id_switches = 0;
   std::int64_t plants = 0;
+  std::int64_t plants_visible = 0;
+  std::int64_t plants_located = 0;  ///< that have a track of their own: whose stems are compared
   double stem_p50_mm = 0.0;
   double stem_p95_mm = 0.0;
   double pose_rms_mm = 0.0;

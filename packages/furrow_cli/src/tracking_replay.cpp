@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "furrow_components/rendered_dataset.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_tracking/pose_correction.hpp"
 
@@ -168,16 +169,7 @@ class Replay {
         track_points_.push_back({static_cast<std::int64_t>(track.id), p_F});
       }
     }
-    if (!evaluation_.add_frame(truth_points_, track_points_).ok()) return;
-    for (const tracking::LabelledPoint& plant : truth_points_) {
-      double nearest_m = kSamePlant_m;
-      for (const tracking::LabelledPoint& point : track_points_) {
-        const double distance_m = (point.p_F_m - plant.p_F_m).norm();
-        if (distance_m > nearest_m) continue;
-        nearest_m = distance_m;
-        track_of_plant_[plant.id] = point.id;
-      }
-    }
+    (void)evaluation_.add_frame(truth_points_, track_points_);
   }
 
   void count() {
@@ -186,16 +178,19 @@ class Replay {
       by_id[static_cast<std::int64_t>(track.id)] = &track;
       if (track.p_F_m.x() < 0.0 || track.p_F_m.x() > log_.field.length_m) continue;
       const bool crop = track.plant_class() == tracking::PlantClass::kCrop;
-      ++(crop ? result_.crops_counted : result_.weeds_counted);
+      ++(crop ? result_.crops : result_.weeds).counted;
     }
-    for (const field::Plant& plant : log_.field.plants) {
-      ++(plant.kind == field::PlantKind::kCrop ? result_.crops_true : result_.weeds_true);
+    for (std::size_t i = 0; i < log_.field.plants.size(); ++i) {
+      const bool crop = log_.field.plants[i].kind == field::PlantKind::kCrop;
+      PlantCounts& counts = crop ? result_.crops : result_.weeds;
+      ++counts.all;
+      if (log_.most_visible_px[i] >= components::kLeastVisible_px) ++counts.visible;
     }
-    for (const auto& [plant, track] : track_of_plant_) {
-      const auto found = by_id.find(track);
+    for (const tracking::IdentityPair& pair : evaluation_.identity_pairs()) {
+      const auto found = by_id.find(pair.track_id);
       if (found == by_id.end()) continue;
-      result_.stem_errors_mm.push_back(1e3 *
-                                       (found->second->p_F_m - plants_.at(plant)->p_F_m).norm());
+      result_.stem_errors_mm.push_back(
+          1e3 * (found->second->p_F_m - plants_.at(pair.truth_id)->p_F_m).norm());
     }
   }
 
@@ -211,7 +206,6 @@ class Replay {
   bool started_ = false;
   std::deque<const furrow_msgs::msg::PlantInstances*> waiting_;
   std::map<std::int64_t, const field::Plant*> plants_;
-  std::map<std::int64_t, std::int64_t> track_of_plant_;
   std::vector<tracking::LabelledPoint> truth_points_;
   std::vector<tracking::LabelledPoint> track_points_;
   ReplayResult result_;

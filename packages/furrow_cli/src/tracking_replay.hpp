@@ -32,17 +32,22 @@ struct ReplayOptions {
   tracking::TrackerParameters tracker;
 };
 
+struct PlantCounts {
+  std::int64_t all = 0;      ///< that stand in the field
+  std::int64_t visible = 0;  ///< of these, those that an image shows kLeastVisible_px of or more
+  std::int64_t counted = 0;  ///< confirmed tracks within the row's length
+};
+
 /// How well the plants of one log were tracked.
 struct ReplayResult {
   /// Frame by frame, in the robot's own frame: what localization drifts does not count here. A
   /// track stands for a plant within 25 mm.
   tracking::TrackingScores scores;
-  std::int64_t crops_true = 0;
-  std::int64_t crops_counted = 0;  ///< confirmed tracks
-  std::int64_t weeds_true = 0;
-  std::int64_t weeds_counted = 0;
+  PlantCounts crops;
+  PlantCounts weeds;
   std::int64_t frames_without_pose = 0;
-  /// Of the last position of each plant's track from the plant, in the field frame.
+  /// Of the last position of each plant's own track (TrackingEvaluation::identity_pairs) from the
+  /// plant, in the field frame.
   std::vector<double> stem_errors_mm;
   std::vector<double> position_errors_mm;  ///< of the base's pose at each frame
   std::vector<double> heading_errors_rad;

@@ -102,7 +102,6 @@ std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& fra
                 std::max(extent.bottom, v)};
     }
   }
-  constexpr std::int64_t kLeastVisible_px = 12;
   std::vector<vision::AnnotatedInstance> instances;
   for (std::size_t i = 0; i < frame.plants.size(); ++i) {
     const simulation::VisiblePlant& visible = frame.plants[i];

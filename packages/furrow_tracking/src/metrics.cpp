@@ -16,8 +16,6 @@ constexpr double kAcceptedSimilarity = 0.5;
 constexpr int kThresholds = 19;
 constexpr std::int32_t kNone = SparseAssignment::kUnmatched;
 
-using IdPair = std::pair<std::int32_t, std::int32_t>;
-
 std::int32_t dense_id(std::vector<std::int64_t>& known, std::map<std::int64_t, std::int32_t>& index,
                       std::int64_t id) {
   const auto [entry, added] = index.try_emplace(id, static_cast<std::int32_t>(known.size()));
@@ -117,6 +115,40 @@ void TrackingEvaluation::score_clear_mot(TrackingScores& scores) const {
   }
 }
 
+std::vector<TrackingEvaluation::IdPair> TrackingEvaluation::best_pairs(
+    const std::map<IdPair, double>& weights) const {
+  std::vector<CandidatePair> candidates;
+  candidates.reserve(weights.size());
+  for (const auto& [ids, weight] : weights) {
+    candidates.push_back({ids.first, ids.second, -weight});
+  }
+  SparseAssignment assignment;
+  const auto columns =
+      assignment.solve(static_cast<std::int32_t>(truth_ids_.size()),
+                       static_cast<std::int32_t>(track_ids_.size()), candidates, 0.0);
+  std::vector<IdPair> pairs;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i] != kNone) pairs.emplace_back(static_cast<std::int32_t>(i), columns[i]);
+  }
+  return pairs;
+}
+
+std::vector<IdentityPair> TrackingEvaluation::identity_pairs() const {
+  std::map<IdPair, double> similarity;
+  for (const Frame& frame : frames_) {
+    for (const Pair& pair : frame.pairs) {
+      if (pair.similarity < kAcceptedSimilarity) continue;
+      similarity[{frame.truth[pair.truth], frame.tracks[pair.track]}] += pair.similarity;
+    }
+  }
+  std::vector<IdentityPair> pairs;
+  for (const auto& [truth, track] : best_pairs(similarity)) {
+    pairs.push_back({truth_ids_[truth], track_ids_[track]});
+  }
+  std::ranges::sort(pairs, {}, &IdentityPair::truth_id);
+  return pairs;
+}
+
 void TrackingEvaluation::score_identities(TrackingScores& scores) const {
   std::map<IdPair, double> frames_together;
   double points = 0.0;
@@ -127,21 +159,8 @@ void TrackingEvaluation::score_identities(TrackingScores& scores) const {
       frames_together[{frame.truth[pair.truth], frame.tracks[pair.track]}] += 1.0;
     }
   }
-  std::vector<CandidatePair> candidates;
-  candidates.reserve(frames_together.size());
-  for (const auto& [ids, count] : frames_together) {
-    candidates.push_back({ids.first, ids.second, -count});
-  }
-  SparseAssignment assignment;
-  const auto columns =
-      assignment.solve(static_cast<std::int32_t>(truth_ids_.size()),
-                       static_cast<std::int32_t>(track_ids_.size()), candidates, 0.0);
   double true_positives = 0.0;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i] != kNone) {
-      true_positives += frames_together[{static_cast<std::int32_t>(i), columns[i]}];
-    }
-  }
+  for (const IdPair& pair : best_pairs(frames_together)) true_positives += frames_together[pair];
   // 2 IDTP + IDFP + IDFN is the number of points on both sides.
   scores.idf1 = points > 0.0 ? 2.0 * true_positives / points : 1.0;
 }

@@ -93,6 +93,22 @@ TEST(TrackingEvaluation, AReturnAfterAGapUnderAnotherIdIsASwitch) {
   EXPECT_EQ(scores.false_negatives, 1);
 }
 
+TEST(TrackingEvaluation, PairsEachPlantWithTheTrackThatStaysNearest) {
+  // Tracks 7 and 8 stand within reach of plants 1 and 2 alike; plant 3 was not found, though the
+  // track of plant 2 is near.
+  TrackingEvaluation evaluation(0.05);
+  const Frame truth = {at(1, 0.0), at(2, 0.010), at(3, 0.020)};
+  for (int frame = 0; frame < 3; ++frame) {
+    ASSERT_TRUE(evaluation.add_frame(truth, Frame{at(8, 0.002), at(7, 0.011)}).ok());
+  }
+  const auto pairs = evaluation.identity_pairs();
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[0].truth_id, 1);
+  EXPECT_EQ(pairs[0].track_id, 8);
+  EXPECT_EQ(pairs[1].truth_id, 2);
+  EXPECT_EQ(pairs[1].track_id, 7);
+}
+
 TEST(TrackingEvaluation, NothingToFindAndNothingClaimedIsPerfect) {
   TrackingEvaluation evaluation(0.02);
   EXPECT_DOUBLE_EQ(evaluation.scores().mota, 1.0);

@@ -12,6 +12,10 @@
 
 namespace furrow::components {
 
+/// An image's annotations hold the plants that it shows this many pixels of and more: less than a
+/// blade of 3 x 4 pixels nobody tells from a crumb of soil.
+inline constexpr std::int64_t kLeastVisible_px = 12;
+
 /// How a rendered data set is drawn. Every image has a field, a light, a soil and a camera pose of
 /// its own, within these ranges.
 struct RenderedDatasetParameters {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "furrow_core/result.hpp"
@@ -35,6 +36,11 @@ struct TrackingScores {
   double association_accuracy = 0.0;  ///< AssA, mean over the thresholds
 };
 
+struct IdentityPair {
+  std::int64_t truth_id = 0;
+  std::int64_t track_id = 0;
+};
+
 /// Collects frames and scores them. Similarity of two points is max(0, 1 - distance /
 /// zero_similarity_distance); MOTA and IDF1 accept pairs at similarity 0.5 and more.
 class TrackingEvaluation {
@@ -47,6 +53,10 @@ class TrackingEvaluation {
                                  std::span<const LabelledPoint> tracks);
   /// Scores are 1 where there is nothing to find and nothing was claimed.
   [[nodiscard]] TrackingScores scores() const;
+  /// Which track stands for which true plant: the one-to-one pairing of whole identities of the
+  /// greatest similarity over all frames, by true id. As for IDF1, similarities below 0.5 do not
+  /// count; so a plant that was not found is not paired with the track of its neighbour.
+  [[nodiscard]] std::vector<IdentityPair> identity_pairs() const;
 
  private:
   struct Pair {
@@ -59,6 +69,9 @@ class TrackingEvaluation {
     std::vector<std::int32_t> tracks;  // dense ids
     std::vector<Pair> pairs;           // positions within `truth` and `tracks`
   };
+  using IdPair = std::pair<std::int32_t, std::int32_t>;  // dense ids of truth and track
+  /// The one-to-one pairs that maximize the sum of their weights.
+  [[nodiscard]] std::vector<IdPair> best_pairs(const std::map<IdPair, double>& weights) const;
   void score_clear_mot(TrackingScores& scores) const;
   void score_identities(TrackingScores& scores) const;
   void score_hota(TrackingScores& scores) const;
