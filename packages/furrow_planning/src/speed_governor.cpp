@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kStep_m = 0.01;
 constexpr std::size_t kSteps = 250;  ///< further than a camera sees
-constexpr int kMostTrials = 40;
 constexpr int kMostLeads = 3;
 constexpr double kHarder = 1.25;
 constexpr double kFollows_mps = 0.05;  ///< what is faster than asked by more does not follow
@@ -75,6 +74,12 @@ void SpeedGovernorParameters::visit(ParameterVisitor& v) {
            .description = "weeds ahead of this weight together are left rather than slowed for",
            .min = 0.0},
           tolerated_weight);
+  v.visit({.name = "most_plans",
+           .description = "for one image, beside that for the least speed; then what was found so "
+                          "far holds",
+           .min = 1,
+           .max = 1000},
+          most_plans);
 }
 
 SpeedGovernor::SpeedGovernor(const SpeedGovernorParameters& parameters, double row_speed_mps,
@@ -91,6 +96,7 @@ SpeedGovernor::SpeedGovernor(const SpeedGovernorParameters& parameters, double r
   require(positive(parameters.speed_step_mps), "speed_step_mps is not positive");
   require(positive(parameters.acceleration_mps2), "acceleration_mps2 is not positive");
   require(not_negative(parameters.lead_m), "lead_m is negative");
+  require(parameters.most_plans >= 1, "most_plans is not positive");
   require(not_negative(parameters.tolerated_weight), "tolerated_weight is negative");
 }
 
@@ -106,7 +112,7 @@ Status SpeedGovernor::consider(const GovernedRobot& robot, const LeftAtSpeeds& l
   SpeedProfile asked = drivable(robot, 1.0);
   bool compared = false;
   int leads = 1;
-  for (int trial = 0; trial < kMostTrials; ++trial) {
+  for (std::int64_t plan = 0; plan < parameters_.most_plans; ++plan) {
     const auto left = left_at(with_excess(asked, robot));
     if (!left.ok()) return left.error();
     left_.assign(left->begin(), left->end());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -20,6 +20,7 @@ struct SpeedGovernorParameters {
   double acceleration_mps2 = 0.3;
   double lead_m = 0.05;
   double tolerated_weight = 0.0;
+  std::int64_t most_plans = 20;
 
   void visit(ParameterVisitor& v);
 };
