@@ -15,6 +15,7 @@ struct TrialOptions {
   TrialExperiment experiment;
   std::string out = "out/trial";
   bool quick = false;
+  bool constant_speed = false;
   std::string json;
   std::string html;
 };
@@ -27,13 +28,15 @@ std::string share(std::int64_t part, std::int64_t whole) {
 void print(const TrialResult& result) {
   std::vector<std::vector<std::string>> table = {{"region", "weeds", "accurate", "partial",
                                                   "missed", "vision", "planning", "loss %",
-                                                  "paper %", "crops", "hit %"}};
+                                                  "paper %", "crops", "hit %", "m/s", "ha/h"}};
   for (const TrialRow& row : result.rows) {
     table.push_back({row.region, std::to_string(row.weeds_total), std::to_string(row.accurate),
                      std::to_string(row.partial), std::to_string(row.missed),
                      std::to_string(row.missed_vision), std::to_string(row.missed_planning),
                      number(row.loss_pct, 1), number(row.paper_loss_pct, 1),
-                     std::to_string(row.crops_total), share(row.crops_hit, row.crops_total)});
+                     std::to_string(row.crops_total), share(row.crops_hit, row.crops_total),
+                     number(mean_speed_mps(row.way_m, row.time_s), 2),
+                     number(area_rate_ha_per_h(row.area_m2, row.time_s), 2)});
   }
   std::cout << text_table(table);
 }
@@ -49,6 +52,7 @@ void write_result(const std::filesystem::path& file, const std::string& text) {
 void evaluate(const TrialOptions& options) {
   TrialExperiment experiment = options.experiment;
   experiment.folder = options.out;
+  experiment.governed = !options.constant_speed;
   ProgressBar bar("trial");
   const TrialResult result = run(experiment, [&bar](double done) { bar.show(done, ""); });
   bar.finish();
@@ -80,6 +84,8 @@ void add_eval_trial_command(CLI::App& app, int& /*exit_code*/) {
   command->add_option("--threads", experiment.threads, "that call components")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  command->add_flag("--constant-speed", options->constant_speed,
+                    "the robot keeps its speed; else it drives as slowly as the planner asks");
   command->add_flag("--quick", options->quick, "stretches of 3 m");
   command->add_option("--out", options->out, "folder of the fields and reports")
       ->capture_default_str();

@@ -50,14 +50,16 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   std::vector<std::string> settings = {
       "common.field_file=" + write_field(experiment, region, seed).string(),
       "common.length_m=" + std::to_string(experiment.length_m)};
-  settings.insert(settings.end(), experiment.conditions.begin(), experiment.conditions.end());
-  settings.insert(settings.end(), experiment.settings.begin(), experiment.settings.end());
+  const std::vector<std::string> all = all_settings(experiment);
+  settings.insert(settings.end(), all.begin(), all.end());
   PreparedGraph prepared = prepare_graph(experiment.graph, settings);
   graph::Registry registry = make_registry();
   RunObserver observer(
       [&progress](const furrow_msgs::msg::RunStatus& status) { progress(status.progress()); },
       RunEnd::kRecord);
   observer.add_to(prepared.spec, registry);
+  PaceObserver pace(experiment.length_m);
+  pace.add_to(prepared.spec, registry);
   graph::Runtime runtime(prepared.spec, registry,
                          {.clock = graph::ClockMode::kLockstep,
                           .threads = experiment.threads,
@@ -80,11 +82,17 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   if (const Status written = ledger::write_run_files(folder, ledger, record); !written.ok()) {
     throw std::runtime_error(written.error().message);
   }
-  return {region,          seed,           field.length_m * field.width_m,
-          name_of(region), ledger.summary, map_svg(ledger, record)};
+  return {.region = region,
+          .seed = seed,
+          .area_m2 = field.length_m * field.width_m,
+          .report = name_of(region),
+          .summary = ledger.summary,
+          .pace = pace.pace(),
+          .map_svg = map_svg(ledger, record)};
 }
 
-void add(TrialRow& row, const ledger::Summary& summary) {
+void add(TrialRow& row, const TrialStretch& stretch) {
+  const ledger::Summary& summary = stretch.summary;
   row.weeds_total += summary.weeds_total;
   row.accurate += summary.treated_accurate;
   row.partial += summary.treated_partial;
@@ -99,9 +107,31 @@ void add(TrialRow& row, const ledger::Summary& summary) {
   row.loss_pct = row.weeds_total > 0 ? 100.0 * static_cast<double>(row.missed) /
                                            static_cast<double>(row.weeds_total)
                                      : 0.0;
+  row.way_m += stretch.pace.way_m;
+  row.time_s += stretch.pace.time_s;
+  row.area_m2 += stretch.area_m2;
 }
 
 }  // namespace
+
+std::vector<std::string> all_settings(const TrialExperiment& experiment) {
+  std::vector<std::string> all = experiment.conditions;
+  if (experiment.governed) {
+    all.insert(all.end(), experiment.governing.begin(), experiment.governing.end());
+  }
+  all.insert(all.end(), experiment.settings.begin(), experiment.settings.end());
+  return all;
+}
+
+double mean_speed_mps(double way_m, double time_s) {
+  return time_s > 0.0 ? way_m / time_s : 0.0;
+}
+
+double area_rate_ha_per_h(double area_m2, double time_s) {
+  constexpr double kHectares = 1e-4;
+  constexpr double kHour_s = 3600.0;
+  return time_s > 0.0 ? area_m2 * kHectares * kHour_s / time_s : 0.0;
+}
 
 TrialResult run(const TrialExperiment& experiment, const std::function<void(double)>& progress) {
   TrialResult result;
@@ -118,8 +148,8 @@ TrialResult run(const TrialExperiment& experiment, const std::function<void(doub
         run_stretch(experiment, experiment.regions[i], seed,
                     [&](double share) { progress((done + share) / parts); }));
     const TrialStretch& stretch = result.stretches.back();
-    add(stretch.region.crop ? crop_weed : weed_only, stretch.summary);
-    add(all, stretch.summary);
+    add(stretch.region.crop ? crop_weed : weed_only, stretch);
+    add(all, stretch);
   }
   result.rows = {weed_only, crop_weed, all};
   return result;

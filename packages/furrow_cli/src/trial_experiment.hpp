@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "furrow_ledger/ledger.hpp"
+#include "trial_pace.hpp"
 
 namespace furrow::cli {
 
@@ -28,6 +29,12 @@ struct TrialExperiment {
   std::vector<std::string> conditions = {
       "robot.spray_delay_jitter_s=0.001", "robot.spray_drift_x_mps=0.03",
       "robot.spray_drift_y_mps=0.05", "camera.render_leaf_sway_m=0.003"};
+  /// That the planner asks for the robot's speed; else the robot keeps its own. With time to spend,
+  /// the planner may be keener on the middle of a footprint.
+  bool governed = true;
+  std::vector<std::string> governing = {"planner.govern_speed=true",
+                                        "robot.follow_speed_requests=true",
+                                        "planner.centre_preference=0.6"};
   double length_m = 12.0;  ///< of each region
   std::uint64_t seed = 1;  ///< each region draws from a seed of its own, which follows from it
   int threads = 2;
@@ -47,6 +54,9 @@ struct TrialRow {
   std::int64_t crops_hit = 0;
   double loss_pct = 0.0;
   double paper_loss_pct = 0.0;
+  double way_m = 0.0;  ///< of the base over the fields, in time_s
+  double time_s = 0.0;
+  double area_m2 = 0.0;
 };
 
 struct TrialStretch {
@@ -55,6 +65,7 @@ struct TrialStretch {
   double area_m2 = 0.0;
   std::string report;  ///< folder of its report
   ledger::Summary summary;
+  Pace pace;
   std::string map_svg;
 };
 
@@ -62,6 +73,12 @@ struct TrialResult {
   std::vector<TrialRow> rows;
   std::vector<TrialStretch> stretches;
 };
+
+/// What the trial sets beyond the graph's files, in the order in which it does.
+[[nodiscard]] std::vector<std::string> all_settings(const TrialExperiment& experiment);
+[[nodiscard]] double mean_speed_mps(double way_m, double time_s);
+/// Hectares an hour while it drives in the row.
+[[nodiscard]] double area_rate_ha_per_h(double area_m2, double time_s);
 
 /// Throws ConfigError for what is asked wrongly, std::runtime_error when a run fails.
 [[nodiscard]] TrialResult run(const TrialExperiment& experiment,

@@ -22,7 +22,9 @@ Json row_json(const TrialRow& row) {
           {"crops_total", row.crops_total},
           {"crops_hit", row.crops_hit},
           {"loss_pct", row.loss_pct},
-          {"paper_loss_pct", row.paper_loss_pct}};
+          {"paper_loss_pct", row.paper_loss_pct},
+          {"mean_speed_mps", mean_speed_mps(row.way_m, row.time_s)},
+          {"area_rate_ha_per_h", area_rate_ha_per_h(row.area_m2, row.time_s)}};
 }
 
 std::string percent(std::int64_t part, std::int64_t whole) {
@@ -52,6 +54,9 @@ Json stretch_json(const TrialStretch& stretch) {
           {"missed_by_reason", causes_json(s)},
           {"crops_total", s.crops_total},
           {"crops_hit", s.crops_hit},
+          {"mean_speed_mps", mean_speed_mps(stretch.pace.way_m, stretch.pace.time_s)},
+          {"least_speed_mps", stretch.pace.least_mps},
+          {"area_rate_ha_per_h", area_rate_ha_per_h(stretch.area_m2, stretch.pace.time_s)},
           {"placement_error_p95_mm",
            s.placement_error_p95_mm ? Json(*s.placement_error_p95_mm) : Json(nullptr)}};
 }
@@ -60,25 +65,26 @@ ledger::ReportTable paper_table(const TrialResult& result) {
   ledger::ReportTable table{
       "",
       {"region", "", "false hits", "weeds", "accurate", "partial", "missed", "missed by vision",
-       "by planning", "loss"},
-      {{"weed-only", "paper", "-", "473", "183", "192", "98", "39", "59", "20.7 %"},
-       {"crop-weed", "paper", "4 %", "565", "177", "213", "175", "113", "62", "31.0 %"},
-       {"all", "paper", "4 %", "1038", "360", "405", "273", "152", "121", "26.3 %"}}};
+       "by planning", "loss", "m/s"},
+      {{"weed-only", "paper", "-", "473", "183", "192", "98", "39", "59", "20.7 %", ""},
+       {"crop-weed", "paper", "4 %", "565", "177", "213", "175", "113", "62", "31.0 %", ""},
+       {"all", "paper", "4 %", "1038", "360", "405", "273", "152", "121", "26.3 %", ""}}};
   for (const TrialRow& row : result.rows) {
     table.rows.push_back({row.region, "simulated", percent(row.crops_hit, row.crops_total),
                           std::to_string(row.weeds_total), std::to_string(row.accurate),
                           std::to_string(row.partial), std::to_string(row.missed),
                           std::to_string(row.missed_vision), std::to_string(row.missed_planning),
-                          fixed(row.loss_pct, 1) + " %"});
+                          fixed(row.loss_pct, 1) + " %",
+                          fixed(mean_speed_mps(row.way_m, row.time_s), 2)});
   }
   return table;
 }
 
 ledger::ReportTable stretch_table(const TrialResult& result) {
-  ledger::ReportTable table{
-      "",
-      {"region", "field", "m2", "weeds", "loss", "crops hit", "placement p95 mm", "causes"},
-      {}};
+  ledger::ReportTable table{"",
+                            {"region", "field", "m2", "weeds", "loss", "crops hit",
+                             "placement p95 mm", "m/s", "least m/s", "ha/h", "causes"},
+                            {}};
   for (const TrialStretch& stretch : result.stretches) {
     const ledger::Summary& s = stretch.summary;
     std::string causes;
@@ -90,6 +96,9 @@ ledger::ReportTable stretch_table(const TrialResult& result) {
                           fixed(stretch.area_m2, 1), std::to_string(s.weeds_total),
                           fixed(s.loss_pct, 1) + " %", percent(s.crops_hit, s.crops_total),
                           s.placement_error_p95_mm ? fixed(*s.placement_error_p95_mm, 1) : "-",
+                          fixed(mean_speed_mps(stretch.pace.way_m, stretch.pace.time_s), 2),
+                          fixed(stretch.pace.least_mps, 2),
+                          fixed(area_rate_ha_per_h(stretch.area_m2, stretch.pace.time_s), 2),
                           causes});
   }
   return table;
@@ -165,10 +174,9 @@ std::string to_json(const TrialExperiment& experiment, const TrialResult& result
     json["stretches"].push_back(stretch_json(stretch));
   }
   json["seed"] = experiment.seed;
-  json["parameters"] = {{"graph", experiment.graph},
-                        {"length_m", experiment.length_m},
-                        {"conditions", experiment.conditions},
-                        {"settings", experiment.settings}};
+  json["parameters"] = {{"graph", experiment.graph},           {"length_m", experiment.length_m},
+                        {"governed", experiment.governed},     {"governing", experiment.governing},
+                        {"conditions", experiment.conditions}, {"settings", experiment.settings}};
   json["version"] = version;
   return json.dump(1) + "\n";
 }
@@ -184,6 +192,13 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
                "on the leaves, and jitter of the valves. The fields are generated at the densities "
                "of the paper's data sets; they are not its fields, and everything of ours here is "
                "simulated. Each region has a seed of its own.");
+  page.section("Speed",
+               experiment.governed
+                   ? "The planner asks for the speed at which its axes keep up with the weeds "
+                     "ahead, up to the robot's own, and the robot follows: what is not missed is "
+                     "paid for with time. Speeds and area an hour are those within the fields."
+                   : "The robot keeps its speed. Speeds and area an hour are those within the "
+                     "fields.");
   page.facts({{"area", fixed(area_m2, 1) + " m2"},
               {"graph", experiment.graph},
               {"seed", std::to_string(experiment.seed)},
