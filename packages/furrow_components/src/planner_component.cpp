@@ -128,6 +128,7 @@ std::vector<LateralAxis> lateral_axes(const geometry::ToolModel& tool) {
 
 std::vector<planning::AxisSpec> specs(const std::vector<LateralAxis>& axes) {
   std::vector<planning::AxisSpec> list;
+  list.reserve(axes.size());
   for (const LateralAxis& axis : axes) list.push_back(axis.spec());
   return list;
 }
