@@ -1,6 +1,7 @@
 #include "speed_requests.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "furrow_graph/stamp.hpp"
 
@@ -19,7 +20,7 @@ SpeedRequests::SpeedRequests(graph::Context& context, bool govern,
 void SpeedRequests::consider(const planning::RobotState& robot, planning::ObservationView& view) {
   if (!governor_) return;
   Status status = governor_->consider(
-      {robot.x_m, robot.speed_mps, view.committed_until_x_m()},
+      {robot.x_m, robot.speed_mps, view.committed_until_x_m(), std::ssize(view.plan().decisions)},
       [&view](const planning::SpeedProfile& speeds) { return view.left_at(speeds); });
   if (status.ok()) status = view.set_speeds(governor_->expected());
   if (!status.ok()) context_.count("speed_not_considered");

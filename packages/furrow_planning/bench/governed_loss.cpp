@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
 
@@ -96,11 +97,12 @@ void drive(bool governed, double speed_mps, const std::vector<Target>& field, do
         require(view->update(field[next]));
       }
       if (governed) {
-        require(governor.consider({x_m, v_mps, view->committed_until_x_m()},
-                                  [&](const SpeedProfile& speeds) {
-                                    sum.trials += 1.0;
-                                    return view->left_at(speeds);
-                                  }));
+        require(governor.consider(
+            {x_m, v_mps, view->committed_until_x_m(), std::ssize(view->plan().decisions)},
+            [&](const SpeedProfile& speeds) {
+              sum.trials += 1.0;
+              return view->left_at(speeds);
+            }));
         require(view->set_speeds(governor.expected()));
       }
       if (const auto replanned = view->replan(); !replanned.ok()) {
@@ -127,7 +129,7 @@ int run(int argc, char** argv) {
   std::printf(
       "per m2   at constant m/s: loss %%          governed: loss %%   m/s   plans an image\n");
   std::printf("             0.5     0.4     0.3\n");
-  for (const double density : {3.1, 8.2, 15.4, 22.3, 30.0}) {
+  for (const double density : {3.1, 8.2, 15.4, 22.3, 30.0, 81.2}) {
     std::printf("%6.1f  ", density);
     for (const double speed_mps : {0.5, 0.4, 0.3, 0.0}) {
       const bool governed = speed_mps <= 0.0;

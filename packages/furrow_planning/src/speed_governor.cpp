@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kStep_m = 0.01;
 constexpr std::size_t kSteps = 250;  ///< further than a camera sees
+constexpr std::int64_t kLeastPlans = 2;
+constexpr std::int64_t kMostPlans = 100;
 constexpr int kMostLeads = 3;
 constexpr double kHarder = 1.25;
 constexpr double kFollows_mps = 0.05;  ///< what is faster than asked by more does not follow
@@ -74,12 +76,12 @@ void SpeedGovernorParameters::visit(ParameterVisitor& v) {
            .description = "weeds ahead of this weight together are left rather than slowed for",
            .min = 0.0},
           tolerated_weight);
-  v.visit({.name = "most_plans",
-           .description = "for one image, beside that for the least speed; then what was found so "
-                          "far holds",
+  v.visit({.name = "most_planned_targets",
+           .description = "in all plans that are tried for one image, of which there are two at "
+                          "least; then what was found so far holds",
            .min = 1,
-           .max = 1000},
-          most_plans);
+           .max = 1e6},
+          most_planned_targets);
 }
 
 SpeedGovernor::SpeedGovernor(const SpeedGovernorParameters& parameters, double row_speed_mps,
@@ -96,7 +98,7 @@ SpeedGovernor::SpeedGovernor(const SpeedGovernorParameters& parameters, double r
   require(positive(parameters.speed_step_mps), "speed_step_mps is not positive");
   require(positive(parameters.acceleration_mps2), "acceleration_mps2 is not positive");
   require(not_negative(parameters.lead_m), "lead_m is negative");
-  require(parameters.most_plans >= 1, "most_plans is not positive");
+  require(parameters.most_planned_targets >= 1, "most_planned_targets is not positive");
   require(not_negative(parameters.tolerated_weight), "tolerated_weight is negative");
 }
 
@@ -112,7 +114,10 @@ Status SpeedGovernor::consider(const GovernedRobot& robot, const LeftAtSpeeds& l
   SpeedProfile asked = drivable(robot, 1.0);
   bool compared = false;
   int leads = 1;
-  for (std::int64_t plan = 0; plan < parameters_.most_plans; ++plan) {
+  const std::int64_t most_plans =
+      std::clamp(parameters_.most_planned_targets / std::max<std::int64_t>(robot.targets, 1),
+                 kLeastPlans, kMostPlans);
+  for (std::int64_t plan = 0; plan < most_plans; ++plan) {
     const auto left = left_at(with_excess(asked, robot));
     if (!left.ok()) return left.error();
     left_.assign(left->begin(), left->end());

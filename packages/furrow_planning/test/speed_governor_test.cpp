@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "furrow_core/error.hpp"
 #include "furrow_core/random.hpp"
@@ -55,11 +57,11 @@ SpeedGovernorParameters parameters() {
           .acceleration_mps2 = 0.3,
           .lead_m = 0.1,
           .tolerated_weight = 0.0,
-          .most_plans = 100};
+          .most_planned_targets = 1200};
 }
 
 GovernedRobot at(double x_m, double speed_mps = kRow_mps) {
-  return {.x_m = x_m, .speed_mps = speed_mps, .committed_until_x_m = x_m};
+  return {.x_m = x_m, .speed_mps = speed_mps, .committed_until_x_m = x_m, .targets = 1};
 }
 
 SpeedGovernor governor_for(Weeds& weeds, const SpeedGovernorParameters& p = parameters()) {
@@ -180,9 +182,15 @@ TEST(SpeedGovernor, TriesABoundedNumberOfPlans) {
   for (int i = 0; i < 200; ++i) weeds.weeds.push_back({0.5 + 0.01 * i, 0.2 + 0.001 * i});
   SpeedGovernorParameters p = parameters();
   p.speed_step_mps = 0.005;
-  p.most_plans = 12;
-  (void)governor_for(weeds, p);
-  EXPECT_EQ(weeds.asked, 12 + 1);
+  // Beside the plan for the least speed: 1200 targets in all, but two plans at least.
+  for (const auto& [targets, plans] : {std::pair{100, 12}, std::pair{10'000, 2}}) {
+    SpeedGovernor governor(p, kRow_mps, kFront_m, kRear_m);
+    GovernedRobot robot = at(0.0);
+    robot.targets = targets;
+    weeds.asked = 0;
+    ASSERT_TRUE(governor.consider(robot, weeds.left_at()).ok());
+    EXPECT_EQ(weeds.asked, plans + 1);
+  }
 }
 
 TEST(SpeedGovernor, RefusesParametersThatAreNotSound) {
@@ -324,7 +332,8 @@ Drive drive(bool governed, double row_mps, std::uint64_t seed) {
       }
       if (governed) {
         EXPECT_TRUE(governor
-                        .consider({x_m, speed_mps, view->committed_until_x_m()},
+                        .consider({x_m, speed_mps, view->committed_until_x_m(),
+                                   std::ssize(view->plan().decisions)},
                                   [&](const SpeedProfile& speeds) { return view->left_at(speeds); })
                         .ok());
         EXPECT_TRUE(view->set_speeds(governor.expected()).ok());

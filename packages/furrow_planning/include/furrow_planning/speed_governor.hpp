@@ -20,7 +20,7 @@ struct SpeedGovernorParameters {
   double acceleration_mps2 = 0.3;
   double lead_m = 0.05;
   double tolerated_weight = 0.0;
-  std::int64_t most_plans = 20;
+  std::int64_t most_planned_targets = 800;
 
   void visit(ParameterVisitor& v);
 };
@@ -35,6 +35,7 @@ struct GovernedRobot {
   /// Sprays up to here are fixed for the speeds decided last: until then it does not accelerate
   /// beyond them.
   double committed_until_x_m = 0.0;
+  std::int64_t targets = 0;  ///< that a plan is for, by which the number of plans is bounded
 };
 
 /// Decides how fast the robot may drive so that the axes keep up with the weeds ahead, as a tool
