@@ -40,6 +40,12 @@ void VegetationFusionParameters::visit(ParameterVisitor& v) {
            .min = 0.5,
            .max = 200.0},
           index_scale);
+  v.visit({.name = "trusted_threshold_factor",
+           .description = "As threshold_factor, which holds where the network is not trusted: a "
+                          "trusted one finds the pale edges of leaves itself",
+           .min = 0.1,
+           .max = 2.0},
+          trusted_threshold_factor);
   index.visit(v);
 }
 
@@ -63,22 +69,23 @@ cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation
   const bool index_too = parameters.source == "both" && vegetation.found;
   cv::Mat logit;
   cv::resize(plant_logit, logit, vegetation.index.size(), 0.0, 0.0, cv::INTER_LINEAR);
+  double trust = 1.0;
+  if (index_too) {
+    constexpr double kSure = 4.0;
+    const double sure = vegetation.threshold + kSure * parameters.index_scale;
+    trust = std::pow(agreement(logit, vegetation.index, sure, bias), parameters.agreement_exponent);
+  }
+  const double factor =
+      std::lerp(parameters.index.threshold_factor, parameters.trusted_threshold_factor, trust);
+  const double threshold = vegetation.threshold_at(factor);
   // Of each level of the index, once.
   std::array<float, 256> evidence{};
   const double most = 2.0 * parameters.network_logit_max;
   for (int i = 0; index_too && i < 256; ++i) {
-    evidence[i] = static_cast<float>(
-        std::clamp((i - vegetation.threshold - 0.5) / parameters.index_scale, -most, most));
+    evidence[i] =
+        static_cast<float>(std::clamp((i - threshold - 0.5) / parameters.index_scale, -most, most));
   }
-  double weight_of_network = 1.0;
-  if (index_too) {
-    constexpr double kSure = 4.0;
-    const double sure = vegetation.threshold + kSure * parameters.index_scale;
-    weight_of_network =
-        parameters.network_weight *
-        std::pow(agreement(logit, vegetation.index, sure, bias), parameters.agreement_exponent);
-  }
-  const auto weight = static_cast<float>(weight_of_network);
+  const auto weight = static_cast<float>(index_too ? parameters.network_weight * trust : 1.0);
   const auto cut = index_too ? static_cast<float>(parameters.network_logit_max)
                              : std::numeric_limits<float>::max();
   cv::Mat mask(vegetation.index.size(), CV_8U);

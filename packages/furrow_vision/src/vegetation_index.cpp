@@ -168,6 +168,11 @@ ColourKind detect_colour_kind(const cv::Mat& bgr) {
   return equal && green_off >= 2.0 * samples ? ColourKind::kFalseColour : ColourKind::kNatural;
 }
 
+int Vegetation::threshold_at(double factor) const {
+  return std::max(kIndexZero + static_cast<int>(std::lround(factor * (otsu - kIndexZero))),
+                  soil_end);
+}
+
 Vegetation segment_vegetation(const cv::Mat& bgr, const VegetationParameters& parameters) {
   Vegetation result;
   if (parameters.colour == "auto") {
@@ -177,10 +182,9 @@ Vegetation segment_vegetation(const cv::Mat& bgr, const VegetationParameters& pa
   }
   const IndexImage image = vegetation_index(bgr, parameters.softening);
   result.index = image.index;
-  const int otsu = otsu_threshold(image.histogram);
-  const int lowered =
-      kIndexZero + static_cast<int>(std::lround(parameters.threshold_factor * (otsu - kIndexZero)));
-  result.threshold = std::max(lowered, soil_end(image.histogram, otsu, parameters.soil_deviations));
+  result.otsu = otsu_threshold(image.histogram);
+  result.soil_end = soil_end(image.histogram, result.otsu, parameters.soil_deviations);
+  result.threshold = result.threshold_at(parameters.threshold_factor);
   const Part soil = part_of(image.histogram, 0, result.threshold);
   const Part plants = part_of(image.histogram, result.threshold + 1, 255);
   // The tail of the soil's own spread ends close above any threshold; plants go far beyond.

@@ -158,6 +158,8 @@ TEST(SplitOutput, RefusesOtherShapesAndValues) {
 TEST(FuseVegetation, IndexAndNetworkOverruleEachOther) {
   Vegetation vegetation;
   vegetation.threshold = 100;
+  vegetation.soil_end = 100;
+  vegetation.otsu = 100;
   vegetation.found = true;
   vegetation.index = (cv::Mat_<std::uint8_t>(1, 4) << 90, 90, 120, 200);
   vegetation.mask = vegetation.index > 100;
@@ -183,6 +185,8 @@ TEST(FuseVegetation, IndexAndNetworkOverruleEachOther) {
 TEST(FuseVegetation, ANetworkThatMissesWhatIsSureIsHeldBack) {
   Vegetation vegetation;
   vegetation.threshold = 100;
+  vegetation.soil_end = 100;
+  vegetation.otsu = 100;
   vegetation.found = true;
   vegetation.index = (cv::Mat_<std::uint8_t>(1, 5) << 105, 150, 150, 150, 150);
   vegetation.mask = vegetation.index > 100;
@@ -201,6 +205,33 @@ TEST(FuseVegetation, ANetworkThatMissesWhatIsSureIsHeldBack) {
   EXPECT_TRUE(first_is_plant(2));   // 0.9 - 4 * 0.0625
   p.agreement_exponent = 0.0;
   EXPECT_FALSE(first_is_plant(2));
+}
+
+TEST(FuseVegetation, ATrustedNetworkRaisesTheThresholdOfTheIndex) {
+  Vegetation vegetation;
+  vegetation.otsu = kIndexZero + 50;
+  vegetation.threshold = kIndexZero + 40;
+  vegetation.found = true;
+  vegetation.index = (cv::Mat_<std::uint8_t>(1, 3) << kIndexZero + 44, 250, 250);
+  vegetation.mask = vegetation.index > vegetation.threshold;
+  VegetationFusionParameters p;
+  p.index_scale = 1.0;
+  p.network_weight = 0.0;  // the trust alone
+  p.agreement_exponent = 1.0;
+  p.index.threshold_factor = 0.8;
+  p.trusted_threshold_factor = 0.9;  // 45 levels above zero, with all of the trust
+  p.index.median_px = 1;
+  const auto first_is_plant = [&](float second, float third) {
+    const cv::Mat logit = (cv::Mat_<float>(1, 3) << 1.0f, second, third);
+    return fuse_vegetation(logit, vegetation, p).at<std::uint8_t>(0, 0) != 0;
+  };
+  EXPECT_FALSE(first_is_plant(1.0f, 1.0f));  // 44 - 45.5
+  EXPECT_TRUE(first_is_plant(1.0f, -1.0f));  // 44 - 43.5 at half of it
+  vegetation.soil_end = kIndexZero + 44;
+  EXPECT_FALSE(first_is_plant(1.0f, -1.0f));
+  vegetation.soil_end = 0;
+  p.trusted_threshold_factor = 0.8;
+  EXPECT_TRUE(first_is_plant(1.0f, 1.0f));
 }
 
 /// The network that test/data/make_one_stage.py makes: at 2 mm a pixel, cells of 4.

@@ -14,8 +14,9 @@ struct VegetationFusionParameters {
   double plant_threshold = 0.5;
   double network_weight = 1.0;
   double network_logit_max = 4.0;
-  double agreement_exponent = 40.0;
+  double agreement_exponent = 100.0;
   double index_scale = 4.0;
+  double trusted_threshold_factor = 0.85;
   VegetationParameters index;
   void visit(ParameterVisitor& v);
 };
@@ -25,11 +26,12 @@ struct VegetationFusionParameters {
 /// the edges and holds on plants and light that the network never saw. With "both" a pixel is
 /// vegetation when
 ///   w * clamp(logit, +-network_logit_max) - logit(plant_threshold)
-///     + clamp((index - threshold) / index_scale, +-2 network_logit_max) > 0,
-/// where w is network_weight times r^agreement_exponent, r the share of the pixels that the index
-/// is sure of (four units above the threshold) in which the network sees plants too: one that
-/// misses many of them is probably shown what it was not trained for. An image in which the index
-/// finds soil only takes the network alone.
+///     + clamp((index - t) / index_scale, +-2 network_logit_max) > 0,
+/// where w is network_weight times the trust r^agreement_exponent, r the share of the pixels that
+/// the index is sure of (four units above its threshold) in which the network sees plants too: one
+/// that misses many of them is probably shown what it was not trained for. The factor of Otsu's
+/// threshold t goes with the trust from threshold_factor to trusted_threshold_factor. An image in
+/// which the index finds soil only takes the network alone.
 [[nodiscard]] cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation,
                                       const VegetationFusionParameters& parameters);
 

@@ -48,7 +48,12 @@ struct Vegetation {
   cv::Mat index;
   ColourKind colour = ColourKind::kNatural;
   int threshold = 255;  ///< vegetation is above
+  int otsu = 255;       ///< Otsu's threshold
+  int soil_end = 0;     ///< no threshold may be lower
   bool found = false;   ///< false: soil only; mask is zero
+
+  /// The threshold by another factor of Otsu's (above kIndexZero).
+  [[nodiscard]] int threshold_at(double factor) const;
 };
 
 /// Vegetation by the index and Otsu's threshold (Otsu 1979), held above the soil's own spread and
