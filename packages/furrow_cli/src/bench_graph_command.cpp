@@ -40,6 +40,8 @@ nlohmann::ordered_json ratios_of(const GraphBenchmarkResult& result) {
            ratio(at("in_process", kLarge).p50_us, at("in_process", kSmall).p50_us)},
           {"fastdds_over_in_process_6mb_p50",
            ratio(at("fastdds_in_process", kLarge).p50_us, at("in_process", kLarge).p50_us)},
+          {"fastdds_bytes_over_in_process_6mb_p50",
+           ratio(at("fastdds_in_process_bytes", kLarge).p50_us, at("in_process", kLarge).p50_us)},
           {"observed_over_alone_100b_p99", observed(kSmall)},
           {"observed_over_alone_1mb_p99", observed(kMiddle)},
           {"observed_over_alone_6mb_p99", observed(kLarge)},

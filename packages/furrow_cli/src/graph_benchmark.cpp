@@ -144,33 +144,42 @@ void measure_observed(const GraphBenchmark& benchmark, const ScratchFolder& scra
   }
 }
 
-/// Fast DDS from one participant to another of the same process, which it delivers without a wire.
-void measure_fastdds_in_process(const GraphBenchmark& benchmark, GraphBenchmarkResult& result) {
+/// Fast DDS from one participant to another of the same process, which it delivers without a wire:
+/// from image to image, as Furrow's readers get one, or of bytes that are taken as they are.
+void measure_fastdds_in_process(const GraphBenchmark& benchmark, bool as_image,
+                                GraphBenchmarkResult& result) {
   const msgs::Topic& topic = msgs::topics::CameraImage::topic();
-  const std::string type(topic.type->dds_name);
+  const msgs::MessageType& type = *topic.type;
   for (const std::size_t bytes : benchmark.bytes) {
     const LatencyLoad load = load_of(bytes, benchmark.scale);
     dds::DdsTransport from(wire_of(benchmark, "bench_graph"));
     dds::DdsTransport to(wire_of(benchmark, "bench_graph_reader"));
+    std::vector<std::byte> payload = image_payload(bytes);
+    const std::shared_ptr<void> image = type.create();
+    if (!type.deserialize(payload, image.get()).ok()) throw std::runtime_error("malformed image");
     Latencies latencies;
     const auto reader = to.make_raw_reader(
-        kRawTopic, type, topic.qos,
-        [&latencies](dds::RawMessage message) { add_payload(latencies, message.payload); });
-    const auto writer = from.make_raw_writer(kRawTopic, type, topic.qos);
+        kRawTopic, std::string(type.dds_name), topic.qos, [&](dds::RawMessage message) {
+          if (as_image && !type.deserialize(message.payload, type.create().get()).ok()) return;
+          add_payload(latencies, message.payload);
+        });
+    const auto writer = from.make_raw_writer(kRawTopic, std::string(type.dds_name), topic.qos);
     wait_until([&] { return writer->has_readers() && reader->writers() == 1; },
                "the reader does not come");
     std::this_thread::sleep_for(kSettle);
-    std::vector<std::byte> payload = image_payload(bytes);
     const auto begin = std::chrono::steady_clock::now();
     const auto period = std::chrono::nanoseconds(load.period.count_ns());
     for (int i = 0; i < load.messages; ++i) {
       std::this_thread::sleep_until(begin + i * period);
-      stamp_payload(payload, static_cast<std::uint32_t>(i), steady_now());
+      const Time stamp = steady_now();
+      if (as_image && !type.serialize(image.get(), payload)) throw std::runtime_error("no room");
+      stamp_payload(payload, static_cast<std::uint32_t>(i), stamp);
       (void)writer->write_now(payload);
     }
     (void)from.flush(Duration::milliseconds(2000));
     std::this_thread::sleep_for(milliseconds(100));
-    result.rows.push_back(row("fastdds_in_process", load, latencies));
+    const char* path = as_image ? "fastdds_in_process" : "fastdds_in_process_bytes";
+    result.rows.push_back(row(path, load, latencies));
   }
 }
 
@@ -284,7 +293,8 @@ GraphBenchmarkResult run_graph_benchmark(const GraphBenchmark& benchmark) {
   GraphBenchmarkResult result;
   measure_in_process(benchmark, result);
   measure_observed(benchmark, scratch, result);
-  measure_fastdds_in_process(benchmark, result);
+  measure_fastdds_in_process(benchmark, true, result);
+  measure_fastdds_in_process(benchmark, false, result);
   measure_two_processes(benchmark, scratch, result);
   if (benchmark.length_m > 0.0) measure_end_to_end(benchmark, scratch, result);
   return result;

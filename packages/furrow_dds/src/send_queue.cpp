@@ -30,27 +30,34 @@ Sender::~Sender() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
   }
-  for (auto& work : work_) {
-    work.notify_all();
+  for (Alarm& work : work_) {
+    work.ring_in({});
   }
   for (auto& thread : threads_) {
     thread.join();
   }
 }
 
-void Sender::schedule(SendQueue& queue) {
+void Sender::schedule(SendQueue& queue, std::chrono::nanoseconds delay) {
   queue.scheduled_ = true;
+  const bool first = ready_[queue.lane_].empty();
   ready_[queue.lane_].push_back(&queue);
-  work_[queue.lane_].notify_one();
+  // A later ring must not put off an earlier one.
+  if (first || delay.count() == 0) work_[queue.lane_].ring_in(delay);
 }
 
 void Sender::run(Lane lane) {
   be_nice(lane == kBulk ? kNiceOfBulk : kNiceOfPrompt);
   std::unique_lock lock(mutex_);
   while (true) {
-    work_[lane].wait(lock, [&] { return stop_ || !ready_[lane].empty(); });
     if (stop_) {
       return;
+    }
+    if (ready_[lane].empty()) {
+      lock.unlock();
+      work_[lane].wait();
+      lock.lock();
+      continue;
     }
     SendQueue& queue = *ready_[lane].front();
     ready_[lane].pop_front();
@@ -78,7 +85,7 @@ void Sender::run(Lane lane) {
       ++queue.counters_.dropped;
     }
     if (queue.held_ || queue.count_ > 0) {
-      schedule(queue);
+      schedule(queue, {});
     } else {
       queue.scheduled_ = false;
     }
@@ -97,7 +104,7 @@ SendQueue::~SendQueue() {
   }
 }
 
-void SendQueue::push(graph::MessagePtr message) {
+void SendQueue::push(graph::MessagePtr message, std::chrono::nanoseconds delay) {
   graph::MessagePtr oldest;  // freed after the lock: that of an image takes a while
   const std::lock_guard lock(sender_.mutex_);
   if (count_ == ring_.size()) {
@@ -109,7 +116,7 @@ void SendQueue::push(graph::MessagePtr message) {
   ring_[(first_ + count_) % ring_.size()] = std::move(message);
   ++count_;
   if (!scheduled_) {
-    sender_.schedule(*this);
+    sender_.schedule(*this, delay);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "alarm.hpp"
 #include "furrow_graph/transport.hpp"
 
 namespace furrow::dds {
@@ -42,11 +43,11 @@ class Sender {
 
   void run(Lane lane);
   /// @pre mutex_ is held.
-  void schedule(SendQueue& queue);
+  void schedule(SendQueue& queue, std::chrono::nanoseconds delay);
 
   const std::size_t bulk_threshold_bytes_;
   std::mutex mutex_;
-  std::array<std::condition_variable, kLanes> work_;
+  std::array<Alarm, kLanes> work_;
   std::condition_variable idle_;
   std::array<std::deque<SendQueue*>, kLanes> ready_;
   bool stop_ = false;
@@ -62,7 +63,8 @@ class SendQueue {
   SendQueue(const SendQueue&) = delete;
   SendQueue& operator=(const SendQueue&) = delete;
 
-  void push(graph::MessagePtr message);
+  /// Sent no sooner than after `delay`, unless something else waits that is.
+  void push(graph::MessagePtr message, std::chrono::nanoseconds delay = {});
   /// False when something still waits or is being sent at `deadline`.
   [[nodiscard]] bool wait_idle(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] graph::WireCounters counters() const;

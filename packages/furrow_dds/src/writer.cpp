@@ -39,11 +39,11 @@ Writer::~Writer() {
   participant_.publisher().delete_datawriter(writer_);
 }
 
-void Writer::write(graph::MessagePtr message) {
+void Writer::write(graph::MessagePtr message, std::chrono::nanoseconds delay) {
   if (message == nullptr) {
     queue_->count_dropped();
   } else if (latched_ || has_readers()) {
-    queue_->push(std::move(message));
+    queue_->push(std::move(message), delay);
   }
 }
 

@@ -18,7 +18,7 @@ class Writer final : public Endpoint, private MessageSink {
   ~Writer() override;
 
   [[nodiscard]] bool has_readers() const { return readers_.load(std::memory_order_relaxed) > 0; }
-  void write(graph::MessagePtr message);
+  void write(graph::MessagePtr message, std::chrono::nanoseconds delay = {});
   [[nodiscard]] bool write_now(const std::vector<std::byte>& payload);
   void count_dropped() { queue_->count_dropped(); }
   [[nodiscard]] graph::WireCounters counters() const { return queue_->counters(); }

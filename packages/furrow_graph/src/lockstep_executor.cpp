@@ -292,7 +292,11 @@ std::unique_ptr<Executor> make_lockstep_executor(int threads) {
 void write_to_wire(Route& route, const MessagePtr& message) {
   if (route.wire == nullptr) return;
   if (route.qos.durability == msgs::Durability::kTransientLocal || route.wire->has_readers()) {
-    route.wire->write(message);
+    if (route.readers.empty()) {
+      route.wire->write(message);
+    } else {
+      route.wire->write_behind(message);
+    }
   }
 }
 

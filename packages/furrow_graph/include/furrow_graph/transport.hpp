@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "furrow_core/time.hpp"
 #include "furrow_msgs/message_type.hpp"
@@ -29,6 +30,8 @@ class WireWriter {
   /// Hands the message over; serialized and sent by another thread, from a bounded queue whose
   /// oldest entry is dropped when full. Never blocks. Messages stay alive until they are sent.
   virtual void write(MessagePtr message) = 0;
+  /// As write(), of a message for which a reader inside has just been woken: that one goes first.
+  virtual void write_behind(MessagePtr message) { write(std::move(message)); }
   [[nodiscard]] virtual WireCounters counters() const = 0;
 };
 
