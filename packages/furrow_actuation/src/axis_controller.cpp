@@ -167,6 +167,7 @@ void AxisController::give_up_due_stops(Time now) {
 ControllerOutput AxisController::update(Time now, Duration period) {
   events_.clear();
   setpoint_ = motion_at(now);
+  follow_drive_after_gap(now, period);
   track_following_error(now);
 
   const bool stopped = (now - profile_start_).to_seconds() >= profile_.duration_s();
@@ -219,6 +220,21 @@ void AxisController::adopt_drive_setpoint(Time now) {
   const double q_m = reading_->position_m + reading_->following_error_m;
   if (!std::isfinite(q_m)) return;
   profile_ = MotionProfile::standing(std::clamp(q_m, limits_.lower_m, limits_.upper_m));
+  profile_start_ = now;
+  setpoint_ = motion_at(now);
+}
+
+void AxisController::follow_drive_after_gap(Time now, Duration period) {
+  constexpr int kPeriodsOfGap = 3;
+  const bool gap =
+      last_update_ && (now - *last_update_).count_ns() > kPeriodsOfGap * period.count_ns();
+  last_update_ = now;
+  if (!gap || !reading_ || reading_->stamp + period < now) return;
+  const double q_m = reading_->position_m + reading_->following_error_m;
+  const double v_mps =
+      std::clamp(reading_->velocity_mps, -limits_.max_velocity_mps, limits_.max_velocity_mps);
+  if (!std::isfinite(q_m) || !std::isfinite(v_mps)) return;
+  profile_ = plan_stop(limits_, {std::clamp(q_m, limits_.lower_m, limits_.upper_m), v_mps, 0.0});
   profile_start_ = now;
   setpoint_ = motion_at(now);
 }

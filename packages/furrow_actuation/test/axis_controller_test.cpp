@@ -97,6 +97,24 @@ TEST(AxisController, MovesToTheStopEarlyAndFiresAtRest) {
   EXPECT_EQ(trip.count(ControllerEventKind::kSprayOpened), 0);
 }
 
+TEST(AxisController, GoesOnFromTheDriveAfterCyclesWereLeftOut) {
+  for (const int cycles : {4, 10, 20, 60}) {
+    Trip trip;
+    trip.plan = {stop_at(1, {0.8, 0.5}, {})};
+    trip.run(0.06);
+    ASSERT_GT(trip.axis().driver.reading().velocity_mps, 1.0);
+    trip.rig.stall(cycles);
+    trip.run(0.2);
+    trip.axis().controller.reset();  // of what has become too old meanwhile
+    trip.run(2.0);
+    EXPECT_EQ(trip.axis().driver.reading().fault, DriveFault::kNone) << cycles;
+    EXPECT_NE(trip.last(ControllerEventKind::kMadeSafe).cause, SafetyCause::kFollowingError);
+    EXPECT_EQ(trip.count(ControllerEventKind::kSprayOpened), 1) << cycles;
+    EXPECT_LT((trip.last(ControllerEventKind::kSprayClosed).p_F - Eigen::Vector2d(0.8, 0.5)).norm(),
+              2e-3);
+  }
+}
+
 TEST(AxisController, PassingFiresOnTheMove) {
   Trip trip;
   trip.plan = {stop_at(1, {0.6, 0.1}, {}), stop_at(2, {0.8, 0.4}, {})};

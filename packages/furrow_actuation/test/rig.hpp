@@ -90,6 +90,18 @@ class Rig {
       for (auto& a : axes_) a->controller.set_odometry(base_);
     }
     for (int i = 0; i < size(); ++i) step_axis(i);
+    drive_on();
+  }
+
+  /// Cycles that a busy computer leaves out: the robot and the drives go on, nobody controls.
+  void stall(int cycles) {
+    for (int i = 0; i < cycles; ++i) drive_on();
+  }
+
+  static constexpr Duration kPeriod = Duration::milliseconds(2);
+
+ private:
+  void drive_on() {
     const int substeps = 20;
     const double h = kPeriod.to_seconds() / substeps;
     for (int k = 0; k < substeps; ++k) {
@@ -106,9 +118,6 @@ class Rig {
     base_.stamp = now_;
   }
 
-  static constexpr Duration kPeriod = Duration::milliseconds(2);
-
- private:
   void step_axis(int i) {
     Axis& a = axis(i);
     if (a.driver.read(now_, kPeriod).ok()) a.controller.set_reading(a.driver.reading());

@@ -99,6 +99,9 @@ class AxisController {
   [[nodiscard]] MotionState motion_at(Time time) const;
   /// The drive may have moved or stopped by itself: go on from where it holds.
   void adopt_drive_setpoint(Time now);
+  /// Without setpoints for some periods the drive has begun to stop: brake with it, and go on from
+  /// there, instead of asking it to jump to where it would be by now.
+  void follow_drive_after_gap(Time now, Duration period);
   void move_to(double q_m, Time now);
   /// On to the same target with the axis' full limits.
   void hurry(Time now);
@@ -134,6 +137,7 @@ class AxisController {
   Time cause_time_;
   std::optional<Time> following_error_since_;
 
+  std::optional<Time> last_update_;
   MotionProfile profile_;
   Time profile_start_;
   MotionState setpoint_;
