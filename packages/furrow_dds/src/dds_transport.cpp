@@ -58,15 +58,10 @@ class TypedWriter final : public graph::WireWriter {
       : writer_(participant, topic, std::string(type.dds_name), &type, qos) {}
   [[nodiscard]] bool has_readers() const override { return writer_.has_readers(); }
   void write(graph::MessagePtr message) override { writer_.write(std::move(message)); }
-  void write_behind(graph::MessagePtr message) override {
-    writer_.write(std::move(message), kHeadStart);
-  }
+  void enqueue(graph::MessagePtr message) override { writer_.enqueue(std::move(message)); }
   [[nodiscard]] graph::WireCounters counters() const override { return writer_.counters(); }
 
  private:
-  // A reader inside is woken within some ten microseconds, more than half of which the thread that
-  // sends costs it when both are woken together.
-  static constexpr std::chrono::microseconds kHeadStart{100};
   Writer writer_;
 };
 
@@ -124,6 +119,21 @@ std::unique_ptr<graph::WireReader> DdsTransport::make_reader(
   return std::make_unique<ReaderOf<graph::WireReader>>(
       impl_->participant, topic, std::string(type.dds_name), qos,
       std::make_unique<TypedHandler>(type, std::move(on_message)));
+}
+
+bool DdsTransport::has_waiting() const {
+  return impl_->participant.sender().has_waiting();
+}
+
+void DdsTransport::send_one() {
+  impl_->participant.sender().send_one();
+}
+
+void DdsTransport::wake_senders() {
+  // Of the readers inside: they wake within some ten microseconds, more than half of which a thread
+  // that sends costs them when it is woken together with them.
+  constexpr std::chrono::microseconds kHeadStart{100};
+  impl_->participant.sender().wake_in(kHeadStart);
 }
 
 std::unique_ptr<RawWriter> DdsTransport::make_raw_writer(const std::string& topic,

@@ -38,59 +38,86 @@ Sender::~Sender() {
   }
 }
 
-void Sender::schedule(SendQueue& queue, std::chrono::nanoseconds delay) {
+void Sender::schedule(SendQueue& queue) {
   queue.scheduled_ = true;
-  const bool first = ready_[queue.lane_].empty();
   ready_[queue.lane_].push_back(&queue);
-  // A later ring must not put off an earlier one.
-  if (first || delay.count() == 0) work_[queue.lane_].ring_in(delay);
+  ++waiting_;
 }
 
 void Sender::run(Lane lane) {
   be_nice(lane == kBulk ? kNiceOfBulk : kNiceOfPrompt);
   std::unique_lock lock(mutex_);
-  while (true) {
-    if (stop_) {
-      return;
-    }
+  while (!stop_) {
     if (ready_[lane].empty()) {
       lock.unlock();
       work_[lane].wait();
       lock.lock();
-      continue;
+      rung_[lane] = false;
+    } else if (send_first_of(lane, lock)) {
+      ring({});
     }
-    SendQueue& queue = *ready_[lane].front();
-    ready_[lane].pop_front();
-    graph::MessagePtr message = queue.pop();
-    queue.sending_ = true;
-    lock.unlock();
-
-    const std::size_t size = queue.sink_.size(message);
-    const bool hand_over = lane == kPrompt && size > bulk_threshold_bytes_;
-    bool sent = false;
-    if (!hand_over) {
-      sent = queue.sink_.send(message, size);
-      message.reset();
-    }
-
-    lock.lock();
-    queue.sending_ = false;
-    if (hand_over) {
-      queue.lane_ = kBulk;
-      queue.held_ = std::move(message);
-    } else if (sent) {
-      ++queue.counters_.messages;
-      queue.counters_.bytes += size;
-    } else {
-      ++queue.counters_.dropped;
-    }
-    if (queue.held_ || queue.count_ > 0) {
-      schedule(queue, {});
-    } else {
-      queue.scheduled_ = false;
-    }
-    idle_.notify_all();
   }
+}
+
+void Sender::send_one() {
+  std::unique_lock lock(mutex_);
+  for (const Lane lane : {kPrompt, kBulk}) {
+    if (!ready_[lane].empty()) {
+      (void)send_first_of(lane, lock);
+      return;
+    }
+  }
+}
+
+void Sender::wake_in(std::chrono::nanoseconds delay) {
+  const std::lock_guard lock(mutex_);
+  ring(delay);
+}
+
+void Sender::ring(std::chrono::nanoseconds delay) {
+  for (const Lane lane : {kPrompt, kBulk}) {
+    // A later ring must not put off an earlier one.
+    if (!ready_[lane].empty() && (!rung_[lane] || delay.count() == 0)) {
+      rung_[lane] = true;
+      work_[lane].ring_in(delay);
+    }
+  }
+}
+
+bool Sender::send_first_of(Lane lane, std::unique_lock<std::mutex>& lock) {
+  SendQueue& queue = *ready_[lane].front();
+  ready_[lane].pop_front();
+  --waiting_;
+  graph::MessagePtr message = queue.pop();
+  queue.sending_ = true;
+  lock.unlock();
+
+  const std::size_t size = queue.sink_.size(message);
+  const bool hand_over = lane == kPrompt && size > bulk_threshold_bytes_;
+  bool sent = false;
+  if (!hand_over) {
+    sent = queue.sink_.send(message, size);
+    message.reset();
+  }
+
+  lock.lock();
+  queue.sending_ = false;
+  if (hand_over) {
+    queue.lane_ = kBulk;
+    queue.held_ = std::move(message);
+  } else if (sent) {
+    ++queue.counters_.messages;
+    queue.counters_.bytes += size;
+  } else {
+    ++queue.counters_.dropped;
+  }
+  idle_.notify_all();
+  if (!queue.held_ && queue.count_ == 0) {
+    queue.scheduled_ = false;
+    return false;
+  }
+  schedule(queue);
+  return true;
 }
 
 SendQueue::SendQueue(Sender& sender, MessageSink& sink, std::size_t depth)
@@ -100,11 +127,16 @@ SendQueue::~SendQueue() {
   std::unique_lock lock(sender_.mutex_);
   sender_.idle_.wait(lock, [&] { return !sending_; });
   for (auto& ready : sender_.ready_) {
-    std::erase(ready, this);
+    sender_.waiting_ -= std::erase(ready, this);
   }
 }
 
-void SendQueue::push(graph::MessagePtr message, std::chrono::nanoseconds delay) {
+void SendQueue::push(graph::MessagePtr message) {
+  push_quietly(std::move(message));
+  sender_.wake_in({});
+}
+
+void SendQueue::push_quietly(graph::MessagePtr message) {
   graph::MessagePtr oldest;  // freed after the lock: that of an image takes a while
   const std::lock_guard lock(sender_.mutex_);
   if (count_ == ring_.size()) {
@@ -116,7 +148,7 @@ void SendQueue::push(graph::MessagePtr message, std::chrono::nanoseconds delay) 
   ring_[(first_ + count_) % ring_.size()] = std::move(message);
   ++count_;
   if (!scheduled_) {
-    sender_.schedule(*this, delay);
+    sender_.schedule(*this);
   }
 }
 
@@ -131,6 +163,7 @@ graph::MessagePtr SendQueue::pop() {
 }
 
 bool SendQueue::wait_idle(std::chrono::steady_clock::time_point deadline) {
+  sender_.wake_in({});
   std::unique_lock lock(sender_.mutex_);
   return sender_.idle_.wait_until(lock, deadline, [&] { return !scheduled_; });
 }

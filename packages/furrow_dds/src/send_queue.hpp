@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -26,9 +27,9 @@ class MessageSink {
 
 class SendQueue;
 
-/// Two threads that send what waits in queues, one message of each queue in turn. A queue starts
-/// with the first thread and stays with the second from its first message above the threshold on;
-/// it is never with both, so that its order holds.
+/// Two threads that send what waits in queues, one message of each queue in turn; others may help.
+/// A queue starts with the first thread and stays with the second from its first message above the
+/// threshold on; it is never with both, so that its order holds.
 class Sender {
  public:
   explicit Sender(std::size_t bulk_threshold_bytes);
@@ -37,19 +38,31 @@ class Sender {
   Sender(const Sender&) = delete;
   Sender& operator=(const Sender&) = delete;
 
+  /// A message waits that no thread has begun to send.
+  [[nodiscard]] bool has_waiting() const { return waiting_ > 0; }
+  /// Sends one on the thread that calls, where one waits.
+  void send_one();
+  /// Has the threads of this object send what waits, when `delay` has passed.
+  void wake_in(std::chrono::nanoseconds delay);
+
  private:
   friend class SendQueue;
   enum Lane : std::size_t { kPrompt, kBulk, kLanes };
 
   void run(Lane lane);
-  /// @pre mutex_ is held.
-  void schedule(SendQueue& queue, std::chrono::nanoseconds delay);
+  // With mutex_ held, which send_first_of() gives back while it sends. It returns true when more of
+  // the same queue waits.
+  void schedule(SendQueue& queue);
+  void ring(std::chrono::nanoseconds delay);
+  bool send_first_of(Lane lane, std::unique_lock<std::mutex>& lock);
 
   const std::size_t bulk_threshold_bytes_;
   std::mutex mutex_;
   std::array<Alarm, kLanes> work_;
+  std::array<bool, kLanes> rung_{};  ///< and not yet heard
   std::condition_variable idle_;
   std::array<std::deque<SendQueue*>, kLanes> ready_;
+  std::atomic<std::size_t> waiting_ = 0;  ///< queues in ready_
   bool stop_ = false;
   std::array<std::thread, kLanes> threads_;
 };
@@ -63,8 +76,9 @@ class SendQueue {
   SendQueue(const SendQueue&) = delete;
   SendQueue& operator=(const SendQueue&) = delete;
 
-  /// Sent no sooner than after `delay`, unless something else waits that is.
-  void push(graph::MessagePtr message, std::chrono::nanoseconds delay = {});
+  void push(graph::MessagePtr message);
+  /// No thread is woken: Sender::send_one() or wake_in() must follow.
+  void push_quietly(graph::MessagePtr message);
   /// False when something still waits or is being sent at `deadline`.
   [[nodiscard]] bool wait_idle(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] graph::WireCounters counters() const;

@@ -39,12 +39,20 @@ Writer::~Writer() {
   participant_.publisher().delete_datawriter(writer_);
 }
 
-void Writer::write(graph::MessagePtr message, std::chrono::nanoseconds delay) {
+void Writer::write(graph::MessagePtr message) {
+  if (takes(message)) queue_->push(std::move(message));
+}
+
+void Writer::enqueue(graph::MessagePtr message) {
+  if (takes(message)) queue_->push_quietly(std::move(message));
+}
+
+bool Writer::takes(const graph::MessagePtr& message) {
   if (message == nullptr) {
     queue_->count_dropped();
-  } else if (latched_ || has_readers()) {
-    queue_->push(std::move(message), delay);
+    return false;
   }
+  return latched_ || has_readers();
 }
 
 std::size_t Writer::size(const graph::MessagePtr& message) {

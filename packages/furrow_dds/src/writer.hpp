@@ -18,7 +18,9 @@ class Writer final : public Endpoint, private MessageSink {
   ~Writer() override;
 
   [[nodiscard]] bool has_readers() const { return readers_.load(std::memory_order_relaxed) > 0; }
-  void write(graph::MessagePtr message, std::chrono::nanoseconds delay = {});
+  void write(graph::MessagePtr message);
+  /// No thread is woken for it: Sender::send_one() or wake_in() must follow.
+  void enqueue(graph::MessagePtr message);
   [[nodiscard]] bool write_now(const std::vector<std::byte>& payload);
   void count_dropped() { queue_->count_dropped(); }
   [[nodiscard]] graph::WireCounters counters() const { return queue_->counters(); }
@@ -44,6 +46,7 @@ class Writer final : public Endpoint, private MessageSink {
     bool closed_ = false;
   };
 
+  [[nodiscard]] bool takes(const graph::MessagePtr& message);
   [[nodiscard]] std::size_t size(const graph::MessagePtr& message) override;
   [[nodiscard]] bool send(const graph::MessagePtr& message, std::size_t size) override;
 

@@ -129,6 +129,59 @@ TEST(SendQueue, KeepsTheOrderOfATopicWithSmallAndLargeMessages) {
   EXPECT_EQ(sink.sent(), expected);
 }
 
+TEST(SendQueue, AnotherThreadMaySendInItsPlace) {
+  Sender sender(kThreshold);
+  GatedSink sink;
+  SendQueue queue(sender, sink, 5);
+  EXPECT_FALSE(sender.has_waiting());
+  queue.push_quietly(packet(1));
+  queue.push_quietly(packet(2, kThreshold + 1));
+  EXPECT_TRUE(sender.has_waiting());
+  EXPECT_TRUE(sink.sent().empty());
+  // The second is looked at, and sent with the large ones.
+  for (int i = 0; i < 3; ++i) {
+    sender.send_one();
+  }
+  EXPECT_EQ(sink.sent(), (std::vector<int>{1, 2}));
+  EXPECT_FALSE(sender.has_waiting());
+  sender.send_one();
+  EXPECT_EQ(queue.counters().messages, 2U);
+}
+
+TEST(SendQueue, WhatWaitsIsSentAfterTheDelay) {
+  Sender sender(kThreshold);
+  GatedSink sink;
+  SendQueue queue(sender, sink, 5);
+  queue.push_quietly(packet(1));
+  sender.wake_in(std::chrono::hours(1));
+  EXPECT_TRUE(sink.sent().empty());
+  // A sooner ring takes its place; a later one does not put it off.
+  queue.push(packet(2));
+  sender.wake_in(std::chrono::hours(1));
+  ASSERT_TRUE(sink.wait_entered(2));
+  EXPECT_TRUE(idle(queue));
+  EXPECT_EQ(sink.sent(), (std::vector<int>{1, 2}));
+}
+
+TEST(SendQueue, KeepsTheOrderWhoeverSends) {
+  Sender sender(kThreshold);
+  GatedSink sink;
+  SendQueue queue(sender, sink, 300);
+  std::vector<int> expected(300);
+  std::iota(expected.begin(), expected.end(), 0);
+  for (const int number : expected) {
+    const MessagePtr message = packet(number, number % 7 == 3 ? 2 * kThreshold : 1);
+    if (number % 3 == 0) {
+      queue.push(message);
+    } else {
+      queue.push_quietly(message);
+      sender.send_one();
+    }
+  }
+  ASSERT_TRUE(idle(queue));
+  EXPECT_EQ(sink.sent(), expected);
+}
+
 TEST(SendQueue, CountsWhatCouldNotBeSent) {
   Sender sender(kThreshold);
   GatedSink sink;

@@ -42,10 +42,12 @@ class Executor : public NodeHost {
 };
 
 [[nodiscard]] std::unique_ptr<Executor> make_lockstep_executor(int threads);
-[[nodiscard]] std::unique_ptr<Executor> make_realtime_executor(int threads);
+/// `transport` (null: none) must live as long.
+[[nodiscard]] std::unique_ptr<Executor> make_realtime_executor(int threads, Transport* transport);
 
-/// Hands a message to the wire when somebody outside reads it. A latched topic is always written,
-/// for those who come later.
+/// Somebody outside reads the topic, or may come later and read what is latched.
+[[nodiscard]] bool wanted_outside(const Route& route);
+/// Hands a message to the wire where it is wanted.
 void write_to_wire(Route& route, const MessagePtr& message);
 
 /// Reason and failure of the first stop that was asked for. Thread-safe.

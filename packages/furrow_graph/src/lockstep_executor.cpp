@@ -289,15 +289,13 @@ std::unique_ptr<Executor> make_lockstep_executor(int threads) {
   return std::make_unique<LockstepExecutor>(threads);
 }
 
+bool wanted_outside(const Route& route) {
+  return route.wire != nullptr &&
+         (route.qos.durability == msgs::Durability::kTransientLocal || route.wire->has_readers());
+}
+
 void write_to_wire(Route& route, const MessagePtr& message) {
-  if (route.wire == nullptr) return;
-  if (route.qos.durability == msgs::Durability::kTransientLocal || route.wire->has_readers()) {
-    if (route.readers.empty()) {
-      route.wire->write(message);
-    } else {
-      route.wire->write_behind(message);
-    }
-  }
+  if (wanted_outside(route)) route.wire->write(message);
 }
 
 void StopRequest::set(std::string_view reason, bool failed) {

@@ -18,16 +18,23 @@ namespace {
 /// time. Nodes that ask for it have a thread of their own.
 class RealtimeExecutor final : public Executor {
  public:
-  explicit RealtimeExecutor(int threads) : threads_(threads) {}
+  RealtimeExecutor(int threads, Transport* transport) : threads_(threads), transport_(transport) {}
 
   [[nodiscard]] Time now() const override { return clock_.now(); }
 
-  void publish(Node& /*from*/, Route& route, MessagePtr message) override {
+  void publish(Node& from, Route& route, MessagePtr message) override {
     if (!running_) {
       constructed_.push_back({&route, std::move(message)});
       return;
     }
     deliver(route, message);
+    if (!wanted_outside(route)) return;
+    // A thread of its own may have a priority: it sends nothing itself.
+    if (dedicated_.contains(&from)) {
+      route.wire->write(std::move(message));
+    } else {
+      route.wire->enqueue(std::move(message));
+    }
   }
 
   void request_stop(std::string_view reason, bool failed) override {
@@ -55,7 +62,10 @@ class RealtimeExecutor final : public Executor {
     start_timers(nodes);
     if (each_second_) timer_queue_.push({now() + kSecond, nullptr, 0});
     running_ = true;
-    for (auto& [route, message] : constructed_) deliver(*route, message);
+    for (auto& [route, message] : constructed_) {
+      deliver(*route, message);
+      write_to_wire(*route, message);
+    }
     constructed_.clear();
     for (const auto& node : nodes) {
       if (node->has_messages()) schedule(*node);
@@ -124,7 +134,6 @@ class RealtimeExecutor final : public Executor {
       reader.node->push(reader.input, message);
       schedule(*reader.node);
     }
-    write_to_wire(route, message);
   }
 
   void schedule(Node& node) {
@@ -144,15 +153,21 @@ class RealtimeExecutor final : public Executor {
     } else if (!strand.queued) {
       strand.queued = true;
       ready_.push(&node);
-      wake_workers_.notify_one();
+      if (waking_ < idle_) {
+        ++waking_;
+        wake_workers_.notify_one();
+      }
     }
   }
 
   void work() {
     std::unique_lock lock(mutex_);
-    while (true) {
-      wake_workers_.wait(lock, [this] { return stop_.requested() || !ready_.empty(); });
-      if (stop_.requested()) return;
+    while (!stop_.requested()) {
+      if (transport_ != nullptr && transport_->has_waiting()) see_to_wire(lock);
+      if (ready_.empty()) {
+        await_work(lock);
+        continue;
+      }
       Node& node = *ready_.front();
       ready_.pop();
       Strand& strand = strands_.at(&node);
@@ -168,6 +183,28 @@ class RealtimeExecutor final : public Executor {
       strand.running = false;
       if (strand.again || node.has_messages()) enqueue(node);
     }
+  }
+
+  /// What a callback published leaves the process when it has returned. Readers inside come first:
+  /// where a worker is waking besides, that one sees to the wire. It is sent here while another
+  /// worker is free for what may come.
+  void see_to_wire(std::unique_lock<std::mutex>& lock) {
+    if (!ready_.empty() && waking_ > 0) return;
+    const bool send_here = ready_.empty() && idle_ > 0;
+    lock.unlock();
+    if (send_here) {
+      transport_->send_one();
+    } else {
+      transport_->wake_senders();
+    }
+    lock.lock();
+  }
+
+  void await_work(std::unique_lock<std::mutex>& lock) {
+    ++idle_;
+    wake_workers_.wait(lock, [this] { return stop_.requested() || waking_ > 0; });
+    --idle_;
+    if (waking_ > 0) --waking_;
   }
 
   void watch_timers() {
@@ -202,6 +239,7 @@ class RealtimeExecutor final : public Executor {
   }
 
   const int threads_;
+  Transport* const transport_;
   const RealtimeClock clock_;
   StopRequest stop_;
   std::function<void(Time)> each_second_;
@@ -214,13 +252,15 @@ class RealtimeExecutor final : public Executor {
   std::condition_variable wake_timers_;
   std::unordered_map<Node*, Strand> strands_;
   std::queue<Node*> ready_;
+  int idle_ = 0;    ///< workers without work
+  int waking_ = 0;  ///< of these, those that were notified
   std::priority_queue<TimerEntry, std::vector<TimerEntry>, std::greater<>> timer_queue_;
 };
 
 }  // namespace
 
-std::unique_ptr<Executor> make_realtime_executor(int threads) {
-  return std::make_unique<RealtimeExecutor>(threads);
+std::unique_ptr<Executor> make_realtime_executor(int threads, Transport* transport) {
+  return std::make_unique<RealtimeExecutor>(threads, transport);
 }
 
 }  // namespace furrow::graph

@@ -16,7 +16,8 @@
 
 namespace furrow::graph {
 
-/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context.
+/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context. What is
+/// published reaches readers inside the process at once, and others when the callback has returned.
 template <class T>
 class Output {
  public:

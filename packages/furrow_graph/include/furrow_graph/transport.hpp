@@ -30,8 +30,8 @@ class WireWriter {
   /// Hands the message over; serialized and sent by another thread, from a bounded queue whose
   /// oldest entry is dropped when full. Never blocks. Messages stay alive until they are sent.
   virtual void write(MessagePtr message) = 0;
-  /// As write(), of a message for which a reader inside has just been woken: that one goes first.
-  virtual void write_behind(MessagePtr message) { write(std::move(message)); }
+  /// As write(), but no thread is woken: Transport::send_one() or wake_senders() must follow.
+  virtual void enqueue(MessagePtr message) { write(std::move(message)); }
   [[nodiscard]] virtual WireCounters counters() const = 0;
 };
 
@@ -56,6 +56,14 @@ class Transport {
   [[nodiscard]] virtual std::unique_ptr<WireReader> make_reader(
       const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
       std::function<void(MessagePtr)> on_message) = 0;
+
+  // To wake a thread that sends costs as much as to wake a reader inside the process: a thread that
+  // has nothing else to do sends what was enqueued in its place. On any thread:
+  /// Something waits that no thread has begun to send. Cheap.
+  [[nodiscard]] virtual bool has_waiting() const { return false; }
+  /// Sends one message, where one waits; takes the longer the larger it is.
+  virtual void send_one() {}
+  virtual void wake_senders() {}
 };
 
 }  // namespace furrow::graph
