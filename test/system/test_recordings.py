@@ -193,6 +193,22 @@ class FromRecordingTest(RecordingCase):
                              self.recorded, "--out", self.out], "camera/", "perception needs")
 
 
+class FromImagesTest(FurrowCase):
+    def test_images_go_through_detector_tracker_and_planner(self):
+        run = ["--seed", 3, "--length", 1, "--set", "camera.camera_rate_hz=2"]
+        summary = self.run_graph(*run, "--record", "images", "--set",
+                                 "recorder.exclude=[perception/*, tracker/*, planner/*, axis/*]")
+        counts = self.bag_info(self.folder / "images_0.mcap")["counts"]
+        self.assertGreater(counts["camera/image"], 10)
+        self.assertNotIn("planner/plan", counts)
+        again = self.run_graph("--seed", 3, "--recording", "images_0.mcap",
+                               out=self.folder / "again")
+        self.assertEqual((self.folder / "again" / "ledger.csv").read_bytes(),
+                         (self.out / "ledger.csv").read_bytes())
+        self.assertGreater(again["treated_accurate"], 0)
+        self.assertEqual(again["weeds_total"], summary["weeds_total"])
+
+
 class WireTest(RecordingCase):
     def test_what_is_played_is_recorded(self):
         recorder = self.start_recorder("--out", "again", "--schema", "omgidl", "--compression",

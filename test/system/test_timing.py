@@ -1,5 +1,5 @@
 """What is measured against the clock, on a machine that does nothing else: how evenly the loops of the
-axes run, drives that must be answered in time, and how fast a recording is worked through."""
+axes run, and drives that must be answered in time."""
 
 import html
 import json
@@ -76,13 +76,12 @@ class ControlLoopTest(FurrowCase):
 
 
 class DriveTest(FurrowCase):
-
     def test_the_row_is_weeded_by_cia402_drives(self):
         script = ROOT / "launch_scripts" / "cia402_demo.sh"
         furrow_program()
         for options in ((), ("--profile-only",)):
             with self.subTest(options=options):
-                done = subprocess.run([script, *options, "--length", "2", "--seed", "7", "--out",
+                done = subprocess.run([script, *options, "--length", "1", "--seed", "7", "--out",
                                        self.out], stdin=subprocess.DEVNULL, capture_output=True,
                                       text=True, timeout=120, check=False)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -90,25 +89,6 @@ class DriveTest(FurrowCase):
                 treated = summary["treated_accurate"] + summary["treated_partial"]
                 self.assertGreater(treated, 0.8 * summary["weeds_total"])
                 self.assertEqual(summary["crops_hit"], 0)
-
-
-class PlaybackTest(FurrowCase):
-
-    def test_images_go_through_detector_tracker_and_planner(self):
-        run = ["--seed", 3, "--length", 1, "--set", "camera.camera_rate_hz=2"]
-        summary = self.run_graph(*run, "--record", "images", "--set",
-                                 "recorder.exclude=[perception/*, tracker/*, planner/*, axis/*]")
-        counts = self.bag_info(self.folder / "images_0.mcap")["counts"]
-        self.assertGreater(counts["camera/image"], 10)
-        self.assertNotIn("planner/plan", counts)
-        again = self.run_graph("--seed", 3, "--recording", "images_0.mcap",
-                               out=self.folder / "again")
-        self.assertEqual((self.folder / "again" / "ledger.csv").read_bytes(),
-                         (self.out / "ledger.csv").read_bytes())
-        self.assertGreater(again["treated_accurate"], 0)
-        self.assertEqual(again["weeds_total"], summary["weeds_total"])
-        # Without the renderer it is faster than the world.
-        self.assertGreater(again["realtime_factor"], 1.0)
 
 
 if __name__ == "__main__":
