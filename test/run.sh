@@ -27,7 +27,7 @@ status=0
 if (($# == 0)); then
   # The system tests wait more than they compute: those of the packages go on beside them.
   colcon --log-base log/packages test --packages-skip furrow_system_tests </dev/null &
-  colcon test --packages-select furrow_system_tests </dev/null || status=$?
+  colcon test --packages-select furrow_system_tests --ctest-args -j4 </dev/null || status=$?
   wait $! || status=$?
 else
   colcon test "$@" </dev/null || status=$?

@@ -30,7 +30,8 @@ class PhotographsTest(FurrowCase):
         return self.folder / name
 
     def weed(self, folder):
-        summary = self.run_graph("--ground", f"photos:{folder}", "--length", 2, "--seed", 7)
+        summary = self.run_graph("--ground", f"photos:{folder}", "--length", 1, "--seed", 7,
+                                 "--set", "camera.camera_rate_hz=1.5")
         rows = self.ledger()
         self.assertEqual(len(rows), summary["weeds_total"] + summary["crops_total"])
         self.assertGreater(summary["weeds_total"], 0)

@@ -52,7 +52,7 @@ bool Node::has_messages() const {
   return !mail_.empty();
 }
 
-std::size_t Node::run_messages() {
+std::size_t Node::run_messages(const std::function<void()>& between) {
   std::size_t budget = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -68,6 +68,7 @@ std::size_t Node::run_messages() {
       mail_.pop_front();
       --inputs_[item.input].waiting;
     }
+    if (handled > 0 && between) between();
     call([&] { inputs_[item.input].callback(item.message); });
   }
   return handled;

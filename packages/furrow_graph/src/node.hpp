@@ -68,7 +68,8 @@ class Node final : public Context {
   void push(std::size_t input, MessagePtr message);
   [[nodiscard]] bool has_messages() const;
   /// Takes out and handles the messages that are there now, oldest first; returns how many.
-  std::size_t run_messages();
+  /// `between` is called between one and the next.
+  std::size_t run_messages(const std::function<void()>& between = {});
 
   [[nodiscard]] std::vector<Timer>& timers() { return timers_; }
   void run_timer(std::size_t timer, Time due);

@@ -5,6 +5,7 @@
 #include <queue>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 
 #include "dedicated_thread.hpp"
 #include "executor.hpp"
@@ -163,7 +164,7 @@ class RealtimeExecutor final : public Executor {
   void work() {
     std::unique_lock lock(mutex_);
     while (!stop_.requested()) {
-      if (transport_ != nullptr && transport_->has_waiting()) see_to_wire(lock);
+      if (something_waits()) see_to_wire(lock);
       if (ready_.empty()) {
         await_work(lock);
         continue;
@@ -177,12 +178,22 @@ class RealtimeExecutor final : public Executor {
       const auto due = std::exchange(strand.due, {});
       for (const auto& [timer, time] : due) strand.timer_pending[timer] = false;
       lock.unlock();
-      node.run_messages();
-      for (const auto& [timer, time] : due) node.run_timer(timer, time);
+      const auto leave_wire_to_senders = [this] {
+        if (something_waits()) transport_->wake_senders();
+      };
+      bool called = node.run_messages(leave_wire_to_senders) > 0;
+      for (const auto& [timer, time] : due) {
+        if (std::exchange(called, true)) leave_wire_to_senders();
+        node.run_timer(timer, time);
+      }
       lock.lock();
       strand.running = false;
       if (strand.again || node.has_messages()) enqueue(node);
     }
+  }
+
+  [[nodiscard]] bool something_waits() const {
+    return transport_ != nullptr && transport_->has_waiting();
   }
 
   /// What a callback published leaves the process when it has returned. Readers inside come first:

@@ -132,6 +132,45 @@ TEST(Sending, WhatNobodyInsideReadsLeavesWhenTheCallbackHasReturned) {
   }
 }
 
+TEST(Sending, MessagesThatWaitedTogetherLeaveOneByOne) {
+  HoldingTransport transport;
+  Registry registry;
+  ComponentClass burst{.name = "source"};
+  burst.description.output<msgs::topics::Tracks>();
+  burst.make = [](Context& context) {
+    auto out = context.output<msgs::topics::Tracks>();
+    context.every(Duration::milliseconds(1), [out](Time) {
+      for (int i = 0; i < 3; ++i) out.publish(furrow_msgs::msg::Tracks());
+    });
+    return std::make_unique<Component>();
+  };
+  registry.add(std::move(burst));
+  ComponentClass relay{.name = "relay"};
+  relay.description.input<msgs::topics::Tracks>().output<msgs::topics::Plan>();
+  std::uint64_t count = 0;
+  bool all_left = true;
+  relay.make = [&](Context& context) {
+    auto out = context.output<msgs::topics::Plan>();
+    context.input<msgs::topics::Tracks>(
+        [&, out](const std::shared_ptr<const furrow_msgs::msg::Tracks>&) {
+          // Does not return before what it published last has left.
+          all_left = all_left && transport.wait_sent(count);
+          if (!all_left || count == kPlans) return context.request_stop("enough");
+          Plan plan;
+          plan.revision(++count);
+          out.publish(std::move(plan));
+        });
+    return std::make_unique<Component>();
+  };
+  registry.add(std::move(relay));
+  GraphSpec graph;
+  graph.components = {spec("s", "source"), spec("r", "relay")};
+  Runtime runtime(graph, registry,
+                  {.clock = ClockMode::kReal, .threads = 1, .transport = &transport});
+  runtime.run();
+  EXPECT_TRUE(all_left);
+}
+
 TEST(Sending, AThreadOfItsOwnLeavesItToTheTransport) {
   HoldingTransport transport;
   Registry registry = test::standard_registry();
