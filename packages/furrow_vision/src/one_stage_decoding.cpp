@@ -119,6 +119,7 @@ class Decoder {
 
   DecodedPlants decode() {
     take_votes();
+    place_stems_without_votes();
     group_leftovers();
     return describe();
   }
@@ -131,6 +132,7 @@ class Decoder {
 
   void take_votes() {
     const NearestPoint nearest(stems_, most_reach_px_);
+    votes_.assign(stems_.size(), 0);
     leftover_ = cv::Mat::zeros(vegetation_.size(), CV_8U);
     for (int v = 0; v < vegetation_.rows; ++v) {
       const auto* set = vegetation_.ptr<std::uint8_t>(v);
@@ -140,10 +142,23 @@ class Decoder {
         const int stem = nearest.find(centre_of(u, v, grid_) + offset, reach_px(offset));
         if (stem >= 0) {
           labels_.at<int>(v, u) = stem + 1;
+          ++votes_[stem];
         } else {
           leftover_.at<std::uint8_t>(v, u) = 255;
         }
       }
+    }
+  }
+
+  /// Of a weed below the leaves of a crop the network may know where it stands and take what shows
+  /// of it for the crop's.
+  void place_stems_without_votes() {
+    for (std::size_t i = 0; i < stems_.size(); ++i) {
+      if (votes_[i] > 0) continue;
+      const cv::Point cell = cell_at(stems_[i].stem_px);
+      if (vegetation_.at<std::uint8_t>(cell) == 0) continue;
+      labels_.at<int>(cell) = static_cast<int>(i) + 1;
+      leftover_.at<std::uint8_t>(cell) = 0;
     }
   }
 
@@ -186,12 +201,16 @@ class Decoder {
     }
   }
 
-  [[nodiscard]] double probability_at(const Eigen::Vector2d& stem_px) const {
-    const Eigen::Vector2d cell = (stem_px.array() + 0.5) / grid_.stride_px - 0.5;
+  /// The nearest one: the point may lie outside.
+  [[nodiscard]] cv::Point cell_at(const Eigen::Vector2d& p_px) const {
+    const Eigen::Vector2d cell = (p_px.array() + 0.5) / grid_.stride_px - 0.5;
     const double u = std::clamp(cell.x(), 0.0, maps_.stem_logit.cols - 1.0);
     const double v = std::clamp(cell.y(), 0.0, maps_.stem_logit.rows - 1.0);
-    return sigmoid(maps_.stem_logit.at<float>(static_cast<int>(std::lround(v)),
-                                              static_cast<int>(std::lround(u))));
+    return {static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v))};
+  }
+
+  [[nodiscard]] double probability_at(const Eigen::Vector2d& stem_px) const {
+    return sigmoid(maps_.stem_logit.at<float>(cell_at(stem_px)));
   }
 
   DecodedPlants describe() {
@@ -257,6 +276,7 @@ class Decoder {
   double base_reach_px_;
   double most_reach_px_;
   std::vector<StemPeak> stems_;
+  std::vector<int> votes_;     ///< for stems_
   std::vector<StemPeak> own_;  ///< of plants that no peak belongs to
   cv::Mat labels_;
   cv::Mat leftover_;

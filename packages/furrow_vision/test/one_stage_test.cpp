@@ -91,12 +91,27 @@ TEST_F(Decoding, PlantWithoutPeakIsOneOfItsOwn) {
 
 TEST_F(Decoding, StrayCellsGoToThePlantThatTheyTouch) {
   draw({2, 4, 6, 6}, {18.0, 26.0}, 3.0f, 1.0f);
-  // One cell that points far away is less than a plant.
+  // One cell, of 16 mm2, that points far away is less than a plant.
+  parameters_.min_plant_area_mm2 = 20.0;
   vegetation_.at<std::uint8_t>(4, 8) = 255;
   maps_.offset_u.at<float>(4, 8) = 2.5f;
   const DecodedPlants decoded = decode();
   ASSERT_EQ(decoded.plants.size(), 1u);
   EXPECT_EQ(decoded.plants[0].cells, 37);
+}
+
+TEST_F(Decoding, AStemBelowTheLeavesOfAnotherPlantIsAPlant) {
+  draw({2, 4, 10, 6}, {17.5, 29.5}, 3.0f, 2.0f);
+  maps_.stem_logit.at<float>(6, 10) = 1.0f;   // its cell votes for the other one
+  maps_.stem_logit.at<float>(15, 25) = 1.0f;  // in soil
+  parameters_.vote_radius_mm = 4.0;
+  parameters_.vote_radius_factor = 0.0;
+  const DecodedPlants decoded = decode();
+  ASSERT_EQ(decoded.plants.size(), 2u);
+  EXPECT_EQ(decoded.plants[0].cells, 59);
+  EXPECT_EQ(decoded.plants[1].cells, 1);
+  EXPECT_EQ(decoded.labels.at<int>(6, 10), 2);
+  EXPECT_NEAR(decoded.plants[1].stem_probability, 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
 }
 
 TEST_F(Decoding, SpecksAreDropped) {

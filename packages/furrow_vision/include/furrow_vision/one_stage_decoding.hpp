@@ -27,12 +27,12 @@ struct OneStageMaps {
 
 /// Lengths on the ground; what visit() declares says each.
 struct OneStageDecodingParameters {
-  double stem_threshold = 0.3;
+  double stem_threshold = 0.25;
   double stem_separation_mm = 8.0;
   double stem_evidence = 1.5;
   double vote_radius_mm = 14.0;
   double vote_radius_factor = 0.35;
-  double min_plant_area_mm2 = 20.0;
+  double min_plant_area_mm2 = 10.0;
   void visit(ParameterVisitor& v);
 };
 
@@ -75,12 +75,13 @@ struct DecodedPlants {
 };
 
 /// Gives each cell of vegetation to a plant. A cell votes for its centre plus its offset; the
-/// nearest stem within vote_radius_mm + vote_radius_factor x |offset| takes it. What no stem takes
-/// is grouped where it hangs together: it goes to the stem that it points to within three times
-/// that radius when it touches that stem's plant, else it is a plant of its own (stem: the median
-/// vote) from min_plant_area_mm2 on, else it goes to the plant that it touches, or is dropped.
-/// Class scores are the softmax of the mean class logits over the cells, weighted by the plant's
-/// probability. @pre vegetation is CV_8U of the maps' size.
+/// nearest stem within vote_radius_mm + vote_radius_factor x |offset| takes it. A stem in
+/// vegetation for which no cell votes takes the cell that it stands in, whose ever that is. What no
+/// stem takes is grouped where it hangs together: it goes to the stem that it points to within
+/// three times that radius when it touches that stem's plant, else it is a plant of its own (stem:
+/// the median vote) from min_plant_area_mm2 on, else it goes to the plant that it touches, or is
+/// dropped. Class scores are the softmax of the mean class logits over the cells, weighted by the
+/// plant's probability. @pre vegetation is CV_8U of the maps' size.
 [[nodiscard]] DecodedPlants decode_one_stage(const OneStageMaps& maps, const cv::Mat& vegetation,
                                              const CellGrid& grid,
                                              const OneStageDecodingParameters& parameters);
