@@ -51,12 +51,12 @@ ledger::ReportTable table_of(const std::vector<TrackingRow>& rows) {
                              "stem p95 mm", "pose RMS mm", "heading RMS deg"},
                             {}};
   for (const TrackingRow& row : rows) {
-    table.rows.push_back(
-        {row.field, row.association, row.localization, fixed(row.nae_crop_pct, 1),
-         fixed(row.nae_weed_pct, 1), fixed(row.nae_crop_all_pct, 1), fixed(row.nae_weed_all_pct, 1),
-         fixed(row.mota, 3), fixed(row.idf1, 3), fixed(row.hota, 3),
-         std::to_string(row.id_switches) + " of " + std::to_string(row.plants),
-         fixed(row.stem_p95_mm, 1), fixed(row.pose_rms_mm, 1), fixed(row.heading_rms_deg, 2)});
+    table.rows.push_back({row.field, row.association, row.localization, fixed(row.nae_crop_pct, 1),
+                          fixed(row.nae_weed_pct, 1), fixed(row.nae_crop_all_pct, 1),
+                          fixed(row.nae_weed_all_pct, 1), fixed(row.mota, 3), fixed(row.idf1, 3),
+                          fixed(row.hota, 3), std::to_string(row.id_switches),
+                          fixed(row.stem_p95_mm, 1), fixed(row.pose_rms_mm, 1),
+                          fixed(row.heading_rms_deg, 2)});
   }
   return table;
 }

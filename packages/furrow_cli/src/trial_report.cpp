@@ -192,6 +192,10 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
                "on the leaves, and jitter of the valves. The fields are generated at the densities "
                "of the paper's data sets; they are not its fields, and everything of ours here is "
                "simulated. Each region has a seed of its own.");
+  page.facts({{"area", fixed(area_m2, 1) + " m2"},
+              {"graph", experiment.graph},
+              {"seed", std::to_string(experiment.seed)},
+              {"version", std::string(version)}});
   page.section("Speed",
                experiment.governed
                    ? "The planner asks for the speed at which its axes keep up with the weeds "
@@ -199,10 +203,6 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
                      "paid for with time. Speeds and area an hour are those within the fields."
                    : "The robot keeps its speed. Speeds and area an hour are those within the "
                      "fields.");
-  page.facts({{"area", fixed(area_m2, 1) + " m2"},
-              {"graph", experiment.graph},
-              {"seed", std::to_string(experiment.seed)},
-              {"version", std::string(version)}});
   page.section("The paper's third table beside ours",
                "Accurate: the stem within 10 mm of a spray's centre; partial: within 25 mm.");
   page.table(paper_table(result));
