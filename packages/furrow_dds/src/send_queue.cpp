@@ -112,12 +112,12 @@ bool Sender::send_first_of(Lane lane, std::unique_lock<std::mutex>& lock) {
     ++queue.counters_.dropped;
   }
   idle_.notify_all();
-  if (!queue.held_ && queue.count_ == 0) {
+  if (queue.held_ || queue.count_ > 0) {
+    schedule(queue);
+  } else {
     queue.scheduled_ = false;
-    return false;
   }
-  schedule(queue);
-  return true;
+  return hand_over;
 }
 
 SendQueue::SendQueue(Sender& sender, MessageSink& sink, std::size_t depth)

@@ -50,8 +50,8 @@ class Sender {
   enum Lane : std::size_t { kPrompt, kBulk, kLanes };
 
   void run(Lane lane);
-  // With mutex_ held, which send_first_of() gives back while it sends. It returns true when more of
-  // the same queue waits.
+  // With mutex_ held, which send_first_of() gives back while it sends. It returns true when it left
+  // the message to the other thread.
   void schedule(SendQueue& queue);
   void ring(std::chrono::nanoseconds delay);
   bool send_first_of(Lane lane, std::unique_lock<std::mutex>& lock);

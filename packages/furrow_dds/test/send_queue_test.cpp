@@ -62,6 +62,18 @@ class GatedSink final : public MessageSink {
   std::vector<int> sent_;
 };
 
+/// From 0 on.
+std::vector<int> numbers(std::size_t count) {
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// Every seventh is large.
+MessagePtr mixed_packet(int number) {
+  return packet(number, number % 7 == 3 ? 2 * kThreshold : 1);
+}
+
 bool idle(SendQueue& queue) {
   return queue.wait_idle(std::chrono::steady_clock::now() + kPatience);
 }
@@ -70,8 +82,7 @@ TEST(SendQueue, SendsInOrderAndCounts) {
   Sender sender(kThreshold);
   GatedSink sink;
   SendQueue queue(sender, sink, 1000);
-  std::vector<int> expected(500);
-  std::iota(expected.begin(), expected.end(), 0);
+  const std::vector<int> expected = numbers(500);
   for (const int number : expected) {
     queue.push(packet(number, 3));
   }
@@ -120,10 +131,9 @@ TEST(SendQueue, KeepsTheOrderOfATopicWithSmallAndLargeMessages) {
   Sender sender(kThreshold);
   GatedSink sink;
   SendQueue queue(sender, sink, 300);
-  std::vector<int> expected(300);
-  std::iota(expected.begin(), expected.end(), 0);
+  const std::vector<int> expected = numbers(300);
   for (const int number : expected) {
-    queue.push(packet(number, number % 7 == 3 ? 2 * kThreshold : 1));
+    queue.push(mixed_packet(number));
   }
   ASSERT_TRUE(idle(queue));
   EXPECT_EQ(sink.sent(), expected);
@@ -167,14 +177,12 @@ TEST(SendQueue, KeepsTheOrderWhoeverSends) {
   Sender sender(kThreshold);
   GatedSink sink;
   SendQueue queue(sender, sink, 300);
-  std::vector<int> expected(300);
-  std::iota(expected.begin(), expected.end(), 0);
+  const std::vector<int> expected = numbers(300);
   for (const int number : expected) {
-    const MessagePtr message = packet(number, number % 7 == 3 ? 2 * kThreshold : 1);
     if (number % 3 == 0) {
-      queue.push(message);
+      queue.push(mixed_packet(number));
     } else {
-      queue.push_quietly(message);
+      queue.push_quietly(mixed_packet(number));
       sender.send_one();
     }
   }
