@@ -1,24 +1,9 @@
 #include "send_queue.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <utility>
 
 namespace furrow::dds {
-namespace {
-
-// A reader inside and the sender are woken at the same moment, often on the same processor: the
-// reader goes first. What is large takes long to serialize, and holds nobody up who computes.
-constexpr int kNiceOfPrompt = 1;
-constexpr int kNiceOfBulk = 10;
-
-void be_nice(int nice) {
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
-}
-
-}  // namespace
 
 Sender::Sender(std::size_t bulk_threshold_bytes) : bulk_threshold_bytes_(bulk_threshold_bytes) {
   threads_[kPrompt] = std::thread([this] { run(kPrompt); });
@@ -45,7 +30,6 @@ void Sender::schedule(SendQueue& queue) {
 }
 
 void Sender::run(Lane lane) {
-  be_nice(lane == kBulk ? kNiceOfBulk : kNiceOfPrompt);
   std::unique_lock lock(mutex_);
   while (!stop_) {
     if (ready_[lane].empty()) {
