@@ -75,6 +75,7 @@ void bench(const BenchGraphOptions& options) {
   json["payload_copied_in_process"] = result.payload_copied;
   json["seed"] = options.benchmark.seed;
   json["parameters"] = {{"scale", options.benchmark.scale},
+                        {"reader_us", options.benchmark.reader_us},
                         {"length_m", options.benchmark.length_m},
                         {"wire", options.benchmark.wire.settings}};
   json["version"] = FURROW_VERSION;
@@ -105,6 +106,12 @@ void add_bench_graph_command(CLI::App& app, int& /*exit_code*/) {
                    "metres driven in real time from frame to plan; 0: not")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
+  graph
+      ->add_option("--reader-us", options->benchmark.reader_us,
+                   "for which Furrow's reader computes with each message; a longer one is called "
+                   "by a thread that is woken for it")
+      ->check(CLI::Range(0.0, 5000.0))
+      ->capture_default_str();
   graph->add_option("--seed", options->benchmark.seed, "of the driven row")->capture_default_str();
   graph->add_option("--json", options->json, "file of the results");
   add_wire_options(*graph, options->benchmark.wire);
@@ -112,8 +119,9 @@ void add_bench_graph_command(CLI::App& app, int& /*exit_code*/) {
   CLI::App* peer = command->add_subcommand("graph-peer", "The other process of `bench graph`.");
   peer->group("");
   peer->add_option("--json", options->json, "file of the results")->required();
+  peer->add_option("--reader-us", options->benchmark.reader_us, "as in `bench graph`");
   add_wire_options(*peer, options->benchmark.wire);
-  peer->callback([options] { run_graph_benchmark_peer(options->benchmark.wire, options->json); });
+  peer->callback([options] { run_graph_benchmark_peer(options->benchmark, options->json); });
 }
 
 }  // namespace furrow::cli

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
@@ -31,26 +32,45 @@ constexpr char kRawTopic[] = "bench/raw";
 constexpr milliseconds kSettle{1500};
 
 /// All sizes at one rate: after a longer pause a processor takes longer to wake.
-LatencyLoad load_of(std::size_t bytes, double scale) {
+LatencyLoad load_of(const GraphBenchmark& benchmark, int rounds = 1) {
   constexpr int kMessages = 500;
-  return {.bytes = bytes,
+  const int messages = std::max(60, static_cast<int>(benchmark.scale * kMessages));
+  return {.bytes = benchmark.bytes,
           .period = Duration::milliseconds(20),
-          .messages = std::max(30, static_cast<int>(scale * kMessages))};
+          .messages = std::max(20, messages / rounds)};
 }
 
-GraphBenchmarkRow row(const std::string& path, const LatencyLoad& load,
-                      const std::vector<double>& times_us, std::size_t received) {
-  const auto sent = static_cast<std::size_t>(load.messages);
-  return {.path = path,
-          .bytes = load.bytes,
-          .p50_us = quantile(times_us, 0.5),
-          .p99_us = quantile(times_us, 0.99),
-          .messages = sent,
-          .lost = sent - std::min(sent, received)};
+LatencyGraph graph_of(const GraphBenchmark& benchmark, const LatencyLoad& load) {
+  return {.load = load, .sink_time = Duration::seconds(benchmark.reader_us * 1e-6)};
 }
 
-GraphBenchmarkRow row(const std::string& path, const LatencyLoad& load, const Latencies& times) {
-  return row(path, load, times.times_us(load.bytes), times.received(load.bytes));
+/// What one path measured, by the size of the messages.
+struct Measured {
+  std::vector<double> times_us;
+  std::size_t sent = 0;
+  std::size_t received = 0;
+};
+using BySize = std::map<std::size_t, Measured>;
+
+void add(BySize& all, const LatencyLoad& load, const Latencies& latencies) {
+  for (const std::size_t bytes : load.bytes) {
+    const std::vector<double> times_us = latencies.times_us(bytes);
+    Measured& measured = all[bytes];
+    measured.times_us.insert(measured.times_us.end(), times_us.begin(), times_us.end());
+    measured.sent += static_cast<std::size_t>(load.messages);
+    measured.received += latencies.received(bytes);
+  }
+}
+
+void add_rows(const std::string& path, const BySize& all, GraphBenchmarkResult& result) {
+  for (const auto& [bytes, measured] : all) {
+    result.rows.push_back({.path = path,
+                           .bytes = bytes,
+                           .p50_us = quantile(measured.times_us, 0.5),
+                           .p99_us = quantile(measured.times_us, 0.99),
+                           .messages = measured.sent,
+                           .lost = measured.sent - std::min(measured.sent, measured.received)});
+  }
 }
 
 dds::DdsParameters wire_of(const GraphBenchmark& benchmark, const std::string& name) {
@@ -112,36 +132,47 @@ ChildProcess start_tool(const GraphBenchmark& benchmark, std::vector<std::string
   return start(std::move(command));
 }
 
-void measure_in_process(const GraphBenchmark& benchmark, GraphBenchmarkResult& result) {
-  for (const std::size_t bytes : benchmark.bytes) {
-    const LatencyLoad load = load_of(bytes, benchmark.scale);
-    Latencies latencies;
-    run_latency_graph({.load = load}, latencies);
-    result.payload_copied = !latencies.never_copied();
-    result.rows.push_back(row("in_process", load, latencies));
-  }
+void measure_alone(const GraphBenchmark& benchmark, const LatencyLoad& load, BySize& measured,
+                   GraphBenchmarkResult& result) {
+  Latencies latencies;
+  run_latency_graph(graph_of(benchmark, load), latencies);
+  result.payload_copied = result.payload_copied || !latencies.never_copied();
+  add(measured, load, latencies);
 }
 
 /// While a recorder of another process reads everything.
-void measure_observed(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
-                      GraphBenchmarkResult& result) {
-  for (const std::size_t bytes : benchmark.bytes) {
-    const LatencyLoad load = load_of(bytes, benchmark.scale);
-    dds::DdsTransport transport(wire_of(benchmark, "bench_graph"));
-    ChildProcess recorder = start_tool(
-        benchmark, {"record", "camera/image", "--compression=lz4", "--min-free-mb=0",
-                    "--out=" + (scratch.path() / ("observed_" + std::to_string(bytes))).string()});
-    Latencies latencies;
-    run_latency_graph({.load = load, .transport = &transport}, latencies,
-                      [&transport](graph::Runtime&) {
-                        wait_until([&] { return peers(transport, "camera/image") == 1; },
-                                   "the recorder does not come");
-                        std::this_thread::sleep_for(kSettle);
-                      });
-    recorder.send(SIGTERM);
-    wait_for_end(recorder, std::chrono::seconds(20), "furrow record");
-    result.rows.push_back(row("in_process_observed", load, latencies));
+void measure_observed(const GraphBenchmark& benchmark, const LatencyLoad& load,
+                      const std::string& file, BySize& measured) {
+  dds::DdsTransport transport(wire_of(benchmark, "bench_graph"));
+  ChildProcess recorder = start_tool(benchmark, {"record", "camera/image", "--compression=lz4",
+                                                 "--min-free-mb=0", "--out=" + file});
+  Latencies latencies;
+  LatencyGraph graph = graph_of(benchmark, load);
+  graph.transport = &transport;
+  run_latency_graph(graph, latencies, [&transport](graph::Runtime&) {
+    wait_until([&] { return peers(transport, "camera/image") == 1; }, "the recorder does not come");
+    std::this_thread::sleep_for(kSettle);
+  });
+  recorder.send(SIGTERM);
+  wait_for_end(recorder, std::chrono::seconds(20), "furrow record");
+  std::error_code ignored;
+  std::filesystem::remove(file + "_0.mcap", ignored);
+  add(measured, load, latencies);
+}
+
+/// In turns, because the speed of a machine that others use too changes within minutes.
+void measure_in_process(const GraphBenchmark& benchmark, const ScratchFolder& scratch,
+                        GraphBenchmarkResult& result) {
+  constexpr int kRounds = 5;
+  const LatencyLoad load = load_of(benchmark, kRounds);
+  BySize alone;
+  BySize observed;
+  for (int i = 0; i < kRounds; ++i) {
+    measure_alone(benchmark, load, alone, result);
+    measure_observed(benchmark, load, (scratch.path() / "observed").string(), observed);
   }
+  add_rows("in_process", alone, result);
+  add_rows("in_process_observed", observed, result);
 }
 
 /// Fast DDS from one participant to another of the same process, which it delivers without a wire:
@@ -150,8 +181,10 @@ void measure_fastdds_in_process(const GraphBenchmark& benchmark, bool as_image,
                                 GraphBenchmarkResult& result) {
   const msgs::Topic& topic = msgs::topics::CameraImage::topic();
   const msgs::MessageType& type = *topic.type;
+  BySize measured;
   for (const std::size_t bytes : benchmark.bytes) {
-    const LatencyLoad load = load_of(bytes, benchmark.scale);
+    LatencyLoad load = load_of(benchmark);
+    load.bytes = {bytes};
     dds::DdsTransport from(wire_of(benchmark, "bench_graph"));
     dds::DdsTransport to(wire_of(benchmark, "bench_graph_reader"));
     std::vector<std::byte> payload = image_payload(bytes);
@@ -178,9 +211,9 @@ void measure_fastdds_in_process(const GraphBenchmark& benchmark, bool as_image,
     }
     (void)from.flush(Duration::milliseconds(2000));
     std::this_thread::sleep_for(milliseconds(100));
-    const char* path = as_image ? "fastdds_in_process" : "fastdds_in_process_bytes";
-    result.rows.push_back(row(path, load, latencies));
+    add(measured, load, latencies);
   }
+  add_rows(as_image ? "fastdds_in_process" : "fastdds_in_process_bytes", measured, result);
 }
 
 /// Furrow and plain Fast DDS take turns, so that both have the same conditions.
@@ -188,44 +221,48 @@ void measure_two_processes(const GraphBenchmark& benchmark, const ScratchFolder&
                            GraphBenchmarkResult& result) {
   const msgs::Topic& topic = msgs::topics::CameraImage::topic();
   const std::string file = (scratch.path() / "peer.json").string();
-  std::vector<LatencyLoad> loads;
+  const LatencyLoad load = load_of(benchmark);
   {
-    ChildProcess peer = start_tool(benchmark, {"bench", "graph-peer", "--json=" + file});
+    ChildProcess peer =
+        start_tool(benchmark, {"bench", "graph-peer", "--json=" + file,
+                               "--reader-us=" + std::to_string(benchmark.reader_us)});
     dds::DdsTransport transport(wire_of(benchmark, "bench_graph"));
     const auto raw =
         transport.make_raw_writer(kRawTopic, std::string(topic.type->dds_name), topic.qos);
-    for (const std::size_t bytes : benchmark.bytes) {
-      const LatencyLoad load = loads.emplace_back(load_of(bytes, benchmark.scale));
-      std::vector<std::byte> payload = image_payload(bytes);
-      Latencies none;
-      LatencyGraph graph;
-      graph.sink = false;
-      graph.load = load;
-      graph.transport = &transport;
-      graph.between = [&](std::uint32_t number) {
-        stamp_payload(payload, number, steady_now());
-        (void)raw->write_now(payload);
-      };
-      run_latency_graph(graph, none, [&](graph::Runtime&) {
-        wait_until([&] { return raw->has_readers() && peers(transport, "camera/image") == 1; },
-                   "the other process does not come");
-        std::this_thread::sleep_for(kSettle);
-      });
-      (void)transport.flush(Duration::milliseconds(2000));
-    }
+    std::vector<std::vector<std::byte>> payloads;
+    for (const std::size_t bytes : load.bytes) payloads.push_back(image_payload(bytes));
+    Latencies none;
+    LatencyGraph graph;
+    graph.sink = false;
+    graph.load = load;
+    graph.transport = &transport;
+    graph.between = [&](std::uint32_t number) {
+      std::vector<std::byte>& payload = payloads[number % payloads.size()];
+      stamp_payload(payload, number, steady_now());
+      (void)raw->write_now(payload);
+    };
+    run_latency_graph(graph, none, [&](graph::Runtime&) {
+      wait_until([&] { return raw->has_readers() && peers(transport, "camera/image") == 1; },
+                 "the other process does not come");
+      std::this_thread::sleep_for(kSettle);
+    });
+    (void)transport.flush(Duration::milliseconds(2000));
     std::this_thread::sleep_for(milliseconds(300));
     peer.send(SIGTERM);
     wait_for_end(peer, std::chrono::seconds(20), "the other process");
   }
   const auto text = read_file(file);
   if (!text) throw std::runtime_error(text.error().message);
-  const auto measured = nlohmann::json::parse(*text);
+  const auto json = nlohmann::json::parse(*text);
   for (const char* path : {"two_processes", "fastdds_two_processes"}) {
-    for (const LatencyLoad& load : loads) {
-      const auto& of_size = measured.at(path).at(std::to_string(load.bytes));
-      result.rows.push_back(row(path, load, of_size.at("us").get<std::vector<double>>(),
-                                of_size.at("received").get<std::size_t>()));
+    BySize measured;
+    for (const std::size_t bytes : load.bytes) {
+      const auto& of_size = json.at(path).at(std::to_string(bytes));
+      measured[bytes] = {.times_us = of_size.at("us").get<std::vector<double>>(),
+                         .sent = static_cast<std::size_t>(load.messages),
+                         .received = of_size.at("received").get<std::size_t>()};
     }
+    add_rows(path, measured, result);
   }
 }
 
@@ -291,8 +328,7 @@ nlohmann::ordered_json to_json(const Latencies& latencies) {
 GraphBenchmarkResult run_graph_benchmark(const GraphBenchmark& benchmark) {
   const ScratchFolder scratch;
   GraphBenchmarkResult result;
-  measure_in_process(benchmark, result);
-  measure_observed(benchmark, scratch, result);
+  measure_in_process(benchmark, scratch, result);
   measure_fastdds_in_process(benchmark, true, result);
   measure_fastdds_in_process(benchmark, false, result);
   measure_two_processes(benchmark, scratch, result);
@@ -300,15 +336,13 @@ GraphBenchmarkResult run_graph_benchmark(const GraphBenchmark& benchmark) {
   return result;
 }
 
-void run_graph_benchmark_peer(const WireOptions& wire, const std::string& file) {
+void run_graph_benchmark_peer(const GraphBenchmark& benchmark, const std::string& file) {
   std::atomic<graph::Runtime*> running = nullptr;
   std::atomic<bool> stopped = false;
   SignalWatch signals([&] {
     stopped = true;
     if (graph::Runtime* runtime = running) runtime->request_stop("stopped");
   });
-  GraphBenchmark benchmark;
-  benchmark.wire = wire;
   Latencies furrow;
   Latencies raw;
   dds::DdsTransport transport(wire_of(benchmark, "bench_graph_peer"));
@@ -316,7 +350,7 @@ void run_graph_benchmark_peer(const WireOptions& wire, const std::string& file) 
   const auto reader = transport.make_raw_reader(
       kRawTopic, std::string(topic.type->dds_name), topic.qos,
       [&raw](dds::RawMessage message) { add_payload(raw, message.payload); });
-  LatencyGraph graph;
+  LatencyGraph graph = graph_of(benchmark, {});
   graph.source = false;
   graph.transport = &transport;
   run_latency_graph(graph, furrow, [&](graph::Runtime& runtime) {

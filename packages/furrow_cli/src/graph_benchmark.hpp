@@ -11,8 +11,9 @@ namespace furrow::cli {
 
 struct GraphBenchmark {
   std::vector<std::size_t> bytes = {100, 1'000'000, 6'000'000};
-  double scale = 1.0;     ///< of the number of messages
-  double length_m = 4.0;  ///< of the row that is driven end to end; 0: none
+  double scale = 1.0;      ///< of the number of messages
+  double reader_us = 0.0;  ///< for which Furrow's reader computes with each message
+  double length_m = 4.0;   ///< of the row that is driven end to end; 0: none
   std::uint64_t seed = 1;
   WireOptions wire;
 };
@@ -28,7 +29,7 @@ struct GraphBenchmarkRow {
 
 struct GraphBenchmarkResult {
   std::vector<GraphBenchmarkRow> rows;
-  bool payload_copied = true;  ///< between components of one process
+  bool payload_copied = false;  ///< between components of one process
 };
 
 /// Hand-off inside a process, the same while a recorder of another process reads along, Fast DDS's
@@ -37,6 +38,6 @@ struct GraphBenchmarkResult {
 [[nodiscard]] GraphBenchmarkResult run_graph_benchmark(const GraphBenchmark& benchmark);
 
 /// The other process: reads until it gets SIGTERM, then writes what it measured into `file`.
-void run_graph_benchmark_peer(const WireOptions& wire, const std::string& file);
+void run_graph_benchmark_peer(const GraphBenchmark& benchmark, const std::string& file);
 
 }  // namespace furrow::cli

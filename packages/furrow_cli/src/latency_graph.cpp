@@ -1,7 +1,6 @@
 #include "latency_graph.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -18,8 +17,8 @@ namespace {
 
 namespace topics = msgs::topics;
 using sensor_msgs::msg::Image;
-constexpr std::size_t kPool = 8;
-constexpr std::uint32_t kWarmUp = 10;
+constexpr std::size_t kPool = 8;  // of each size
+constexpr std::uint32_t kWarmUp = 30;
 // In the CDR form of an image with an empty frame_id: behind the encapsulation header come sec,
 // nanosec, the length and end of frame_id (8 bytes), height.
 constexpr std::size_t kSecAt = 4;
@@ -47,7 +46,9 @@ class Source final : public graph::Component {
   Source(graph::Context& context, std::shared_ptr<Shared> shared)
       : context_(context), shared_(std::move(shared)), out_(context.output<topics::CameraImage>()) {
     const LatencyLoad& load = shared_->graph.load;
-    for (auto& image : pool_) image = make_image(load.bytes);
+    for (std::uint32_t i = 0; i < kPool * load.bytes.size(); ++i) {
+      pool_.push_back(make_image(load.bytes_of(i)));
+    }
     const Duration half = Duration::nanoseconds(load.period.count_ns() / 2);
     context.every(half, [this](Time) { step(); });
   }
@@ -59,12 +60,12 @@ class Source final : public graph::Component {
       if (graph.between) graph.between(number_ - 1);
       return;
     }
-    if (number_ == static_cast<std::uint32_t>(graph.load.messages)) {
+    if (number_ == graph.load.total()) {
       context_.request_stop("finished");
       return;
     }
-    auto& image = pool_[number_ % kPool];
-    if (image.use_count() > 1) image = make_image(graph.load.bytes);
+    auto& image = pool_[number_ % pool_.size()];
+    if (image.use_count() > 1) image = make_image(graph.load.bytes_of(number_));
     image->height(number_);
     shared_->addresses[number_] = image->data().data();
     ++number_;
@@ -75,7 +76,7 @@ class Source final : public graph::Component {
   graph::Context& context_;
   std::shared_ptr<Shared> shared_;
   graph::Output<topics::CameraImage> out_;
-  std::array<std::shared_ptr<Image>, kPool> pool_;
+  std::vector<std::shared_ptr<Image>> pool_;  ///< of each size in turn, as they are published
   std::uint32_t number_ = 0;
   std::uint64_t turn_ = 0;
 };
@@ -90,6 +91,12 @@ graph::ComponentClass source_class(const std::shared_ptr<Shared>& shared) {
   return type;
 }
 
+void compute_for(Duration duration) {
+  const Time end = steady_now() + duration;
+  while (steady_now() < end) {
+  }
+}
+
 graph::ComponentClass sink_class(const std::shared_ptr<Shared>& shared) {
   graph::ComponentClass type;
   type.name = "latency_sink";
@@ -102,6 +109,7 @@ graph::ComponentClass sink_class(const std::shared_ptr<Shared>& shared) {
       if (shared->graph.source) {
         shared->latencies.note_address(image->data().data() == shared->addresses.at(number));
       }
+      compute_for(shared->graph.sink_time);
     });
     return std::make_unique<graph::Component>();
   };
@@ -207,7 +215,7 @@ void add_payload(Latencies& latencies, const std::vector<std::byte>& payload) {
 void run_latency_graph(const LatencyGraph& graph, Latencies& latencies,
                        const std::function<void(graph::Runtime&)>& started) {
   auto shared = std::make_shared<Shared>(Shared{.graph = graph, .latencies = latencies});
-  shared->addresses.resize(static_cast<std::size_t>(graph.load.messages));
+  shared->addresses.resize(graph.load.total());
   graph::Registry registry = make_registry();
   registry.add(source_class(shared));
   registry.add(sink_class(shared));

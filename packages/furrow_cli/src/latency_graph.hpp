@@ -15,11 +15,19 @@
 
 namespace furrow::cli {
 
-/// What is sent, and how often.
+/// What is sent, and how often: images of each size in turn, so that all sizes have the same
+/// conditions.
 struct LatencyLoad {
-  std::size_t bytes = 100;  ///< of an image's pixels
+  std::vector<std::size_t> bytes = {100};  ///< of an image's pixels
   Duration period = Duration::milliseconds(10);
-  int messages = 1000;
+  int messages = 1000;  ///< of each size
+
+  [[nodiscard]] std::size_t bytes_of(std::uint32_t number) const {
+    return bytes[number % bytes.size()];
+  }
+  [[nodiscard]] std::uint32_t total() const {
+    return static_cast<std::uint32_t>(bytes.size()) * static_cast<std::uint32_t>(messages);
+  }
 };
 
 /// Times from publication to the reader's callback.
@@ -29,7 +37,7 @@ class Latencies {
   void add(std::uint32_t number, Time stamp, std::size_t bytes);
   void note_address(bool same);
 
-  /// Of messages with so many bytes, without the first ten; in us.
+  /// Of messages with so many bytes, without those among the first thirty of all; in us.
   [[nodiscard]] std::vector<double> times_us(std::size_t bytes) const;
   [[nodiscard]] std::size_t received(std::size_t bytes) const;
   /// Every payload was read where it was written.
@@ -62,6 +70,7 @@ struct LatencyGraph {
   bool source = true;
   bool sink = true;
   LatencyLoad load;
+  Duration sink_time;  ///< for which the reader computes with each image
   graph::Transport* transport = nullptr;
   /// Called between two images, half a period after each.
   std::function<void(std::uint32_t number)> between;

@@ -55,7 +55,7 @@ std::uint64_t messages_in(const std::filesystem::path& file) {
 RecordedGraphTiming measure_graph(const RecordingBenchmark& benchmark) {
   LatencyGraph graph;
   graph.load = {
-      .bytes = kImageBytes, .period = Duration::milliseconds(50), .messages = benchmark.messages};
+      .bytes = {kImageBytes}, .period = Duration::milliseconds(50), .messages = benchmark.messages};
   RecordedGraphTiming timing;
   timing.messages = static_cast<std::uint64_t>(benchmark.messages);
   {
