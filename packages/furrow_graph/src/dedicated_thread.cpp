@@ -17,9 +17,11 @@ void DedicatedThread::release() {
 }
 
 void DedicatedThread::wake() {
-  const std::lock_guard lock(mutex_);
-  woken_ = true;
-  wake_.notify_one();
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+  }
+  wake_.notify_one();  // it would find the mutex taken
 }
 
 void DedicatedThread::join() {

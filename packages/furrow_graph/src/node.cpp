@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <limits>
 
 #include "furrow_graph/graph_check.hpp"
 
@@ -52,6 +53,14 @@ bool Node::has_messages() const {
   return !mail_.empty();
 }
 
+double Node::expected_call_s() const {
+  const std::lock_guard lock(mutex_);
+  if (mail_.empty()) return std::numeric_limits<double>::infinity();
+  const Input& input = inputs_[mail_.front().input];
+  if (input.calls == 0) return std::numeric_limits<double>::infinity();
+  return input.busy_s / static_cast<double>(input.calls);
+}
+
 std::size_t Node::run_messages(const std::function<void()>& between) {
   std::size_t budget = 0;
   {
@@ -69,7 +78,8 @@ std::size_t Node::run_messages(const std::function<void()>& between) {
       --inputs_[item.input].waiting;
     }
     if (handled > 0 && between) between();
-    call([&] { inputs_[item.input].callback(item.message); });
+    Input& input = inputs_[item.input];
+    call([&] { input.callback(item.message); }, &input);
   }
   return handled;
 }
@@ -83,7 +93,7 @@ void Node::run_timer(std::size_t timer, Time due) {
   call([&] { timers_[timer].callback(due); });
 }
 
-void Node::call(const std::function<void()>& callback) {
+void Node::call(const std::function<void()>& callback, Input* input) {
   const auto start = std::chrono::steady_clock::now();
   try {
     callback();
@@ -94,6 +104,10 @@ void Node::call(const std::function<void()>& callback) {
   const std::lock_guard lock(mutex_);
   ++callbacks_;
   busy_s_ += took.count();
+  if (input != nullptr) {
+    ++input->calls;
+    input->busy_s += took.count();
+  }
   longest_call_s_ = std::max(longest_call_s_, took.count());
 }
 

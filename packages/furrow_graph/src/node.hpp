@@ -67,6 +67,9 @@ class Node final : public Context {
 
   void push(std::size_t input, MessagePtr message);
   [[nodiscard]] bool has_messages() const;
+  /// The mean of earlier calls with messages of the input whose message is next; infinite where
+  /// there is no message, or was no call.
+  [[nodiscard]] double expected_call_s() const;
   /// Takes out and handles the messages that are there now, oldest first; returns how many.
   /// `between` is called between one and the next.
   std::size_t run_messages(const std::function<void()>& between = {});
@@ -109,10 +112,13 @@ class Node final : public Context {
     std::size_t waiting = 0;
     std::uint64_t received = 0;
     std::uint64_t dropped = 0;
+    std::uint64_t calls = 0;
+    double busy_s = 0.0;
   };
 
-  /// Calls the component and keeps account of the time; what it throws stops the run.
-  void call(const std::function<void()>& callback);
+  /// Calls the component and keeps account of the time, also by input where there is one; what it
+  /// throws stops the run.
+  void call(const std::function<void()>& callback, Input* input = nullptr);
   void require_declared(const std::vector<PortInfo>& ports, const msgs::Topic& topic) const;
 
   ComponentSpec spec_;

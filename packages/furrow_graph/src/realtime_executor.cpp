@@ -9,14 +9,24 @@
 
 #include "dedicated_thread.hpp"
 #include "executor.hpp"
+#include "outbox.hpp"
 #include "realtime_clock.hpp"
+#include "strand_queue.hpp"
 #include "thread_scheduling.hpp"
 
 namespace furrow::graph {
 namespace {
 
+/// Its next call takes no longer than it takes until another thread has been woken for it.
+bool is_short(const Node& node) {
+  constexpr double kWakeUp_s = 50e-6;
+  return node.expected_call_s() < kWakeUp_s;
+}
+
 /// Calls nodes from a pool of threads as their mail and timers come; a node is on one thread at a
-/// time. Nodes that ask for it have a thread of their own.
+/// time. Nodes that ask for it have a thread of their own. To wake a thread is what costs most
+/// (docs/decisions/0008): a worker goes on with what its callback published, and the transport's
+/// thread calls itself who is short.
 class RealtimeExecutor final : public Executor {
  public:
   RealtimeExecutor(int threads, Transport* transport) : threads_(threads), transport_(transport) {}
@@ -28,27 +38,47 @@ class RealtimeExecutor final : public Executor {
       constructed_.push_back({&route, std::move(message)});
       return;
     }
-    deliver(route, message);
+    // A thread of its own may have a priority: it goes on with no reader, and sends nothing itself.
+    const bool by_pool = !dedicated_.contains(&from);
+    for (const Route::Reader& reader : route.readers) {
+      reader.node->push(reader.input, message);
+      if (wake_dedicated(*reader.node)) continue;
+      std::unique_lock lock(mutex_);
+      ready_.enqueue(*reader.node);
+      if (!by_pool) unlock_and_wake(lock);
+    }
     if (!wanted_outside(route)) return;
-    // A thread of its own may have a priority: it sends nothing itself.
-    if (dedicated_.contains(&from)) {
-      route.wire->write(std::move(message));
+    if (by_pool) {
+      outbox_.put(route, std::move(message));
     } else {
-      route.wire->enqueue(std::move(message));
+      route.wire->write(std::move(message));
     }
   }
 
   void request_stop(std::string_view reason, bool failed) override {
     stop_.set(reason, failed);
+    {
+      const std::lock_guard lock(timer_mutex_);
+      wake_timers_.notify_all();
+    }
     const std::lock_guard lock(mutex_);
     wake_workers_.notify_all();
-    wake_timers_.notify_all();
     for (auto& [node, thread] : dedicated_) thread->wake();
   }
 
   void deliver_from_wire(const Route::Reader& reader, MessagePtr message) override {
-    reader.node->push(reader.input, std::move(message));
-    if (running_) schedule(*reader.node);
+    Node& node = *reader.node;
+    node.push(reader.input, std::move(message));
+    if (!running_ || wake_dedicated(node)) return;
+    std::unique_lock lock(mutex_);
+    if (stop_.requested()) return;
+    // Nothing may hold that thread up where it brings messages to a thread that must be in time.
+    if (!dedicated_.empty() || !is_short(node)) {
+      ready_.enqueue(node);
+    } else if (ready_.begin_or_enqueue(node)) {
+      call_on_thread_of_transport(node, lock);
+    }
+    unlock_and_wake(lock);
   }
 
   void every_second(std::function<void(Time)> callback) override {
@@ -64,7 +94,7 @@ class RealtimeExecutor final : public Executor {
     if (each_second_) timer_queue_.push({now() + kSecond, nullptr, 0});
     running_ = true;
     for (auto& [route, message] : constructed_) {
-      deliver(*route, message);
+      for (const Route::Reader& reader : route->readers) reader.node->push(reader.input, message);
       write_to_wire(*route, message);
     }
     constructed_.clear();
@@ -75,6 +105,8 @@ class RealtimeExecutor final : public Executor {
     watch_timers();
     for (std::thread& worker : workers) worker.join();
     for (auto& [node, thread] : dedicated_) thread->join();
+    wait_for_thread_of_transport();
+    outbox_.hand_over();
     running_ = false;
     return stop_.result(now());
   }
@@ -82,13 +114,6 @@ class RealtimeExecutor final : public Executor {
  private:
   static constexpr Duration kSecond = Duration::milliseconds(1000);
 
-  struct Strand {
-    bool queued = false;
-    bool again = false;  // something came while it ran
-    bool running = false;
-    std::vector<bool> timer_pending;
-    std::vector<std::pair<std::size_t, Time>> due;
-  };
   struct TimerEntry {
     Time due;
     Node* node;  ///< null: the second
@@ -103,7 +128,7 @@ class RealtimeExecutor final : public Executor {
       if (node->spec().dedicated_thread) {
         dedicated_.emplace(node.get(), std::make_unique<DedicatedThread>(*node, clock_, stop_));
       } else {
-        strands_[node.get()].timer_pending.assign(node->timers().size(), false);
+        ready_.add(*node);
       }
     }
   }
@@ -111,7 +136,6 @@ class RealtimeExecutor final : public Executor {
   /// When every thread is there: making them takes its time, the more with locked memory.
   void start_timers(std::span<const std::unique_ptr<Node>> nodes) {
     const Time start = now();
-    const std::lock_guard lock(mutex_);
     for (const auto& node : nodes) {
       for (std::size_t i = 0; i < node->timers().size(); ++i) {
         Node::Timer& timer = node->timers()[i];
@@ -130,83 +154,105 @@ class RealtimeExecutor final : public Executor {
     }
   }
 
-  void deliver(Route& route, const MessagePtr& message) {
-    for (const Route::Reader& reader : route.readers) {
-      reader.node->push(reader.input, message);
-      schedule(*reader.node);
-    }
+  bool wake_dedicated(Node& node) {
+    const auto own = dedicated_.find(&node);
+    if (own == dedicated_.end()) return false;
+    own->second->wake();
+    return true;
   }
 
   void schedule(Node& node) {
-    if (const auto own = dedicated_.find(&node); own != dedicated_.end()) {
-      own->second->wake();
-      return;
-    }
-    const std::lock_guard lock(mutex_);
-    enqueue(node);
+    if (wake_dedicated(node)) return;
+    std::unique_lock lock(mutex_);
+    ready_.enqueue(node);
+    unlock_and_wake(lock);
   }
 
-  // With the mutex held.
-  void enqueue(Node& node) {
-    Strand& strand = strands_.at(&node);
-    if (strand.running) {
-      strand.again = true;
-    } else if (!strand.queued) {
-      strand.queued = true;
-      ready_.push(&node);
-      if (waking_ < idle_) {
-        ++waking_;
-        wake_workers_.notify_one();
-      }
-    }
+  /// A worker for each node that is ready. The mutex is given back first: a thread can be awake
+  /// before the call that wakes it has returned, and would find it taken.
+  void unlock_and_wake(std::unique_lock<std::mutex>& lock) {
+    const int wanted = std::min(static_cast<int>(ready_.size()), idle_);
+    const int woken = std::max(0, wanted - waking_);
+    waking_ += woken;
+    lock.unlock();
+    for (int i = 0; i < woken; ++i) wake_workers_.notify_one();
+  }
+
+  void call_on_thread_of_transport(Node& node, std::unique_lock<std::mutex>& lock) {
+    ++calls_of_transport_;
+    lock.unlock();
+    node.run_messages();
+    leave_wire_to_senders();
+    lock.lock();
+    ready_.end(node);
+    --calls_of_transport_;
+    call_of_transport_ended_.notify_all();
+  }
+
+  void wait_for_thread_of_transport() {
+    std::unique_lock lock(mutex_);
+    call_of_transport_ended_.wait(lock, [this] { return calls_of_transport_ == 0; });
   }
 
   void work() {
     std::unique_lock lock(mutex_);
+    bool quick = false;
     while (!stop_.requested()) {
-      if (something_waits()) see_to_wire(lock);
+      // A short call comes before waking anybody for what waits besides, but not two in a row.
+      quick = !quick && !ready_.empty() && is_short(ready_.front());
+      if (!quick && something_waits()) see_to_wire(lock);
       if (ready_.empty()) {
         await_work(lock);
         continue;
       }
-      Node& node = *ready_.front();
-      ready_.pop();
-      Strand& strand = strands_.at(&node);
-      strand.queued = false;
-      strand.running = true;
-      strand.again = false;
-      const auto due = std::exchange(strand.due, {});
-      for (const auto& [timer, time] : due) strand.timer_pending[timer] = false;
-      lock.unlock();
-      const auto leave_wire_to_senders = [this] {
-        if (something_waits()) transport_->wake_senders();
-      };
-      bool called = node.run_messages(leave_wire_to_senders) > 0;
-      for (const auto& [timer, time] : due) {
-        if (std::exchange(called, true)) leave_wire_to_senders();
-        node.run_timer(timer, time);
+      const StrandQueue::Call call = ready_.begin_first();
+      if (quick) {
+        lock.unlock();
+      } else {
+        unlock_and_wake(lock);
       }
+      run_call(call);
       lock.lock();
-      strand.running = false;
-      if (strand.again || node.has_messages()) enqueue(node);
+      ready_.end(*call.node);
+    }
+  }
+
+  /// What a callback published waits for nothing but its return: between two of them it is left to
+  /// others.
+  void run_call(const StrandQueue::Call& call) {
+    const auto leave_to_others = [this] {
+      std::unique_lock lock(mutex_);
+      unlock_and_wake(lock);
+      leave_wire_to_senders();
+    };
+    bool called = call.node->run_messages(leave_to_others) > 0;
+    for (const auto& [timer, due] : call.timers) {
+      if (std::exchange(called, true)) leave_to_others();
+      call.node->run_timer(timer, due);
     }
   }
 
   [[nodiscard]] bool something_waits() const {
-    return transport_ != nullptr && transport_->has_waiting();
+    return transport_ != nullptr && (!outbox_.empty() || transport_->has_waiting());
   }
 
-  /// What a callback published leaves the process when it has returned. Readers inside come first:
-  /// where a worker is waking besides, that one sees to the wire. It is sent here while another
-  /// worker is free for what may come.
+  void leave_wire_to_senders() {
+    if (!something_waits()) return;
+    outbox_.hand_over();
+    transport_->wake_senders();
+  }
+
+  /// What a callback published leaves the process when it has returned: sent here while another
+  /// worker is free for what may come. A worker that is waking for a reader inside sees to it too.
   void see_to_wire(std::unique_lock<std::mutex>& lock) {
     if (!ready_.empty() && waking_ > 0) return;
     const bool send_here = ready_.empty() && idle_ > 0;
     lock.unlock();
     if (send_here) {
+      outbox_.hand_over();
       transport_->send_one();
     } else {
-      transport_->wake_senders();
+      leave_wire_to_senders();
     }
     lock.lock();
   }
@@ -219,34 +265,35 @@ class RealtimeExecutor final : public Executor {
   }
 
   void watch_timers() {
-    std::unique_lock lock(mutex_);
-    while (!stop_.requested()) {
-      if (timer_queue_.empty()) {
-        wake_timers_.wait(lock, [this] { return stop_.requested(); });
-        return;
-      }
+    while (sleep_until_timer()) {
       TimerEntry entry = timer_queue_.top();
-      const auto due = clock_.steady(entry.due);
-      if (wake_timers_.wait_until(lock, due, [this] { return stop_.requested(); })) return;
       timer_queue_.pop();
+      // A call that came first may take longer than was expected of it.
+      leave_wire_to_senders();
       if (entry.node == nullptr) {
-        timer_queue_.push({entry.due + kSecond, nullptr, 0});
-        lock.unlock();
         each_second_(now());
-        lock.lock();
-        continue;
-      }
-      Strand& strand = strands_.at(entry.node);
-      if (strand.timer_pending[entry.timer]) {
-        entry.node->count_missed_timer();
+        entry.due += kSecond;
       } else {
-        strand.timer_pending[entry.timer] = true;
-        strand.due.emplace_back(entry.timer, entry.due);
-        enqueue(*entry.node);
+        std::unique_lock lock(mutex_);
+        if (!ready_.enqueue_timer(*entry.node, entry.timer, entry.due)) {
+          entry.node->count_missed_timer();
+        }
+        unlock_and_wake(lock);
+        entry.due += entry.node->timers()[entry.timer].period;
       }
-      entry.due += entry.node->timers()[entry.timer].period;
       timer_queue_.push(entry);
     }
+  }
+
+  /// False: the stop was requested.
+  bool sleep_until_timer() {
+    std::unique_lock lock(timer_mutex_);
+    const auto stopped = [this] { return stop_.requested(); };
+    if (timer_queue_.empty()) {
+      wake_timers_.wait(lock, stopped);
+      return false;
+    }
+    return !wake_timers_.wait_until(lock, clock_.steady(timer_queue_.top().due), stopped);
   }
 
   const int threads_;
@@ -257,15 +304,20 @@ class RealtimeExecutor final : public Executor {
   std::atomic<bool> running_ = false;
   std::vector<std::pair<Route*, MessagePtr>> constructed_;
   std::unordered_map<Node*, std::unique_ptr<DedicatedThread>> dedicated_;  // fixed while running
+  Outbox outbox_;
+
+  // The watcher's own while running: with the workers' mutex it would collide with whom it wakes.
+  std::priority_queue<TimerEntry, std::vector<TimerEntry>, std::greater<>> timer_queue_;
+  std::mutex timer_mutex_;  // of the sleep
+  std::condition_variable wake_timers_;
 
   std::mutex mutex_;  // of what follows
   std::condition_variable wake_workers_;
-  std::condition_variable wake_timers_;
-  std::unordered_map<Node*, Strand> strands_;
-  std::queue<Node*> ready_;
+  std::condition_variable call_of_transport_ended_;
+  StrandQueue ready_;
   int idle_ = 0;    ///< workers without work
   int waking_ = 0;  ///< of these, those that were notified
-  std::priority_queue<TimerEntry, std::vector<TimerEntry>, std::greater<>> timer_queue_;
+  int calls_of_transport_ = 0;
 };
 
 }  // namespace

@@ -16,8 +16,8 @@
 
 namespace furrow::graph {
 
-/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context. What is
-/// published reaches readers inside the process at once, and others when the callback has returned.
+/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context. Readers
+/// are called, and messages leave the process, when the callback has returned: publish last.
 template <class T>
 class Output {
  public:

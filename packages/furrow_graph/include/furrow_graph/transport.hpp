@@ -52,7 +52,7 @@ class Transport {
   [[nodiscard]] virtual std::unique_ptr<WireWriter> make_writer(const std::string& topic,
                                                                 const msgs::MessageType& type,
                                                                 const msgs::Qos& qos) = 0;
-  /// `on_message` is called on the transport's thread and must only enqueue.
+  /// `on_message` is called on the transport's thread and must not hold it up.
   [[nodiscard]] virtual std::unique_ptr<WireReader> make_reader(
       const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
       std::function<void(MessagePtr)> on_message) = 0;
