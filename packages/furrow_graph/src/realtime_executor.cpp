@@ -88,6 +88,7 @@ class RealtimeExecutor final : public Executor {
   RunResult run(std::span<const std::unique_ptr<Node>> nodes) override {
     prepare(nodes);
     std::vector<std::thread> workers;
+    workers.reserve(static_cast<std::size_t>(threads_));
     for (int i = 0; i < threads_; ++i) workers.emplace_back([this] { work(); });
     for (auto& [node, thread] : dedicated_) thread->start();
     start_timers(nodes);

@@ -62,6 +62,7 @@ TEST_F(OutboxTest, OrderHoldsWhoeverHandsOver) {
   constexpr int kMany = 5000;
   std::atomic<bool> stop = false;
   std::vector<std::thread> others;
+  others.reserve(2);
   for (int i = 0; i < 2; ++i) {
     others.emplace_back([&] {
       while (!stop) outbox_.hand_over();
