@@ -18,7 +18,7 @@ namespace {
 namespace topics = msgs::topics;
 using sensor_msgs::msg::Image;
 constexpr std::size_t kPool = 8;  // of each size
-constexpr std::uint32_t kWarmUp = 30;
+constexpr std::uint32_t kWarmUp = 10;
 // In the CDR form of an image with an empty frame_id: behind the encapsulation header come sec,
 // nanosec, the length and end of frame_id (8 bytes), height.
 constexpr std::size_t kSecAt = 4;

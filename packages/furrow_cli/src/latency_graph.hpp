@@ -37,7 +37,7 @@ class Latencies {
   void add(std::uint32_t number, Time stamp, std::size_t bytes);
   void note_address(bool same);
 
-  /// Of messages with so many bytes, without those among the first thirty of all; in us.
+  /// Of messages with so many bytes, without those among the first ten of all; in us.
   [[nodiscard]] std::vector<double> times_us(std::size_t bytes) const;
   [[nodiscard]] std::size_t received(std::size_t bytes) const;
   /// Every payload was read where it was written.
