@@ -26,6 +26,7 @@ class LockstepExecutor final : public Executor {
   void request_stop(std::string_view reason, bool failed) override { stop_.set(reason, failed); }
 
   void interrupt(std::string_view reason) override {
+    interrupted_ = true;
     stop_.set(reason, false);
     if (shared_ != nullptr) shared_->exchange->abort(std::string(reason));
   }
@@ -144,7 +145,8 @@ class LockstepExecutor final : public Executor {
   [[nodiscard]] std::shared_ptr<Wave> make_wave(std::vector<Published> published) {
     auto wave = std::make_shared<Wave>();
     wave->next_timer_ns = next_timer().count_ns();
-    if (stop_.requested()) {
+    // An interruption is told by abort(): the others must not learn of it in one way or the other.
+    if (stop_.requested() && !interrupted_) {
       const RunResult result = stop_.result(now_);
       wave->stop = true;
       wave->reason = result.reason;
@@ -267,6 +269,7 @@ class LockstepExecutor final : public Executor {
 
   Crew crew_;
   StopRequest stop_;
+  std::atomic<bool> interrupted_ = false;
   Time now_;
   bool running_ = false;
   std::span<const std::unique_ptr<Node>> nodes_;

@@ -186,11 +186,9 @@ TEST(SharedLockstep, AnInterruptionEndsAllProcesses) {
     runtime.request_stop("interrupted");
   });
   EXPECT_EQ(runtime.run().reason, "interrupted");
-  // It goes with the wave that is being made at that moment, or else on its own.
   const RunResult result = other.get();
-  const bool left = result.reason == "process 'two' left: interrupted";
-  EXPECT_TRUE(left || result.reason == "interrupted") << result.reason;
-  EXPECT_EQ(result.failed, left);
+  EXPECT_EQ(result.reason, "process 'two' left: interrupted");
+  EXPECT_TRUE(result.failed);
   signal.join();
 }
 
