@@ -30,18 +30,30 @@ std::shared_ptr<void> IncomingMessage::make_message() {
   if (size_ < kReuseBytes) {
     return type_.create();
   }
-  for (auto& kept : kept_) {
-    if (kept == nullptr) {
-      kept = type_.create();
-      return kept;
+  Kept* best = nullptr;
+  for (Kept& kept : kept_) {
+    if (kept.message.use_count() > 1) {
+      continue;
     }
-    if (kept.use_count() == 1) {
-      // What the last holder read happened before we write.
-      std::atomic_thread_fence(std::memory_order_acquire);
-      return kept;
+    // One that has to grow would clear what is then written over.
+    if (kept.size == size_) {
+      best = &kept;
+      break;
+    }
+    if (best == nullptr || kept.size == 0) {
+      best = &kept;
     }
   }
-  return type_.create();
+  if (best == nullptr) {
+    return type_.create();
+  }
+  if (best->message == nullptr) {
+    best->message = type_.create();
+  }
+  // What the last holder read happened before we write.
+  std::atomic_thread_fence(std::memory_order_acquire);
+  best->size = size_;
+  return best->message;
 }
 
 std::size_t OutgoingBytes::serialize(std::span<std::byte> out) const {

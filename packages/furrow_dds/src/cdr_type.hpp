@@ -37,8 +37,9 @@ class OutgoingMessage final : public WireData {
   std::size_t size_;
 };
 
-/// Reads into a new message, or, when it is large, into one that it made before and that nobody
-/// holds any more: allocating and clearing a camera image costs as much as copying it.
+/// Reads into a new message, or, when it is large, into one that it made before, if possible for
+/// the same size, and that nobody holds any more: allocating and clearing a camera image costs as
+/// much as copying it.
 class IncomingMessage final : public WireData {
  public:
   explicit IncomingMessage(const msgs::MessageType& type) : type_(type) {}
@@ -51,12 +52,17 @@ class IncomingMessage final : public WireData {
  private:
   static constexpr std::size_t kKept = 4;
 
+  struct Kept {
+    std::shared_ptr<void> message;
+    std::size_t size = 0;  ///< serialized
+  };
+
   [[nodiscard]] std::shared_ptr<void> make_message();
 
   const msgs::MessageType& type_;
   graph::MessagePtr message_;
   std::size_t size_ = 0;
-  std::array<std::shared_ptr<void>, kKept> kept_;
+  std::array<Kept, kKept> kept_;
 };
 
 class OutgoingBytes final : public WireData {
