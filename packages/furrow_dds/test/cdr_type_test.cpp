@@ -68,7 +68,7 @@ TEST(IncomingMessage, WhatIsHeldIsNotWrittenOver) {
 TEST(IncomingMessage, MoreSizesThanAreKeptAreReadRightToo) {
   IncomingMessage incoming(image_type());
   for (std::uint8_t i = 0; i < 30; ++i) {
-    const std::size_t pixels = kLarge + (i % 7) * 50'000;
+    const std::size_t pixels = kLarge + std::size_t{50'000} * (i % 7);
     EXPECT_TRUE(holds(*receive(incoming, pixels, i), pixels, i)) << int{i};
   }
 }
