@@ -44,7 +44,7 @@ void Node::push(std::size_t input, MessagePtr message) {
     --target.waiting;
     ++target.dropped;
   }
-  mail_.push_back({input, std::move(message)});
+  mail_.push_back({input, std::move(message), host_.now()});
   ++target.waiting;
 }
 
@@ -79,6 +79,7 @@ std::size_t Node::run_messages(const std::function<void()>& between) {
     }
     if (handled > 0 && between) between();
     Input& input = inputs_[item.input];
+    arrival_ = item.arrived;
     call([&] { input.callback(item.message); }, &input);
   }
   return handled;
@@ -167,10 +168,12 @@ void Node::require_declared(const std::vector<PortInfo>& ports, const msgs::Topi
   }
 }
 
-void Node::bind_input(const msgs::Topic& topic, std::function<void(const MessagePtr&)> callback) {
+void Node::bind_input(const msgs::Topic& topic, std::function<void(const MessagePtr&)> callback,
+                      int depth) {
   require_declared(type_.description.inputs(), topic);
-  inputs_.push_back({resolved_topic(spec_, topic), static_cast<std::size_t>(topic.qos.depth),
-                     std::move(callback)});
+  if (depth < 1) throw ConfigError("the depth of an input must be positive");
+  inputs_.push_back(
+      {resolved_topic(spec_, topic), static_cast<std::size_t>(depth), std::move(callback)});
 }
 
 std::function<void(MessagePtr)> Node::bind_output(const msgs::Topic& topic) {

@@ -86,6 +86,7 @@ class Node final : public Context {
   // Context
   [[nodiscard]] const std::string& name() const override { return spec_.name; }
   [[nodiscard]] Time now() const override { return host_.now(); }
+  [[nodiscard]] Time arrival() const override { return arrival_; }
   [[nodiscard]] std::uint64_t seed() const override { return seed_; }
   void every(Duration period, std::function<void(Time)> callback) override;
   void health(HealthLevel level, std::string_view message) override;
@@ -96,14 +97,15 @@ class Node final : public Context {
   [[nodiscard]] const std::vector<GivenParameter>& given_parameters() const override {
     return parameters_;
   }
-  void bind_input(const msgs::Topic& topic,
-                  std::function<void(const MessagePtr&)> callback) override;
+  void bind_input(const msgs::Topic& topic, std::function<void(const MessagePtr&)> callback,
+                  int depth) override;
   [[nodiscard]] std::function<void(MessagePtr)> bind_output(const msgs::Topic& topic) override;
 
  private:
   struct Item {
     std::size_t input;
     MessagePtr message;
+    Time arrived;
   };
   struct Input {
     std::string topic;
@@ -129,6 +131,7 @@ class Node final : public Context {
   std::function<Route&(const std::string&)> route_of_;
   std::unique_ptr<Component> component_;
   std::vector<Timer> timers_;
+  Time arrival_;  // of the message that is being handled
 
   mutable std::mutex mutex_;  // of what follows
   std::vector<Input> inputs_;

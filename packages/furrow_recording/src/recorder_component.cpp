@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -32,7 +33,15 @@ std::string stem_of(const std::string& file) {
   return path.extension() == ".mcap" ? path.replace_extension().string() : file;
 }
 
-/// Records the topics of the graph that it lives in, on the graph's clock.
+/// A recorder waits for a thread of the pool as all others do, which may compute for a second; what
+/// comes meanwhile must not be lost, also of topics of which other readers want only the newest.
+int mailbox_depth(const msgs::Qos& qos) {
+  constexpr int kLeast = 64;
+  constexpr int kOfOthers = 20;
+  return std::max(kLeast, kOfOthers * qos.depth);
+}
+
+/// Records the topics of the graph that it lives in, on the graph's clock, as of when they came.
 class RecorderComponent final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
@@ -63,20 +72,22 @@ class RecorderComponent final : public graph::Component {
     const std::size_t number =
         recorder_.add_topic(describe_topic(name, topic.type->ros_name, {topic.qos}, style));
     const bool wanted = recorder_.accepts(name);
-    context_.input<T>([this, number, wanted, type = topic.type](const auto& message) {
-      if (wanted) record(number, message, *type);
-      if constexpr (std::is_same_v<T, msgs::topics::EmergencyStop>) {
-        if (message->active()) recorder_.trigger();
-      }
-    });
+    context_.input<T>(
+        [this, number, wanted, type = topic.type](const auto& message) {
+          if (wanted) record(number, message, *type);
+          if constexpr (std::is_same_v<T, msgs::topics::EmergencyStop>) {
+            if (message->active()) recorder_.trigger();
+          }
+        },
+        mailbox_depth(topic.qos));
   }
 
   void record(std::size_t topic, std::shared_ptr<const void> message,
               const msgs::MessageType& type) {
-    const Time now = context_.now();
+    const Time came = context_.arrival();
     if (parameters_.wait_for_disk) {
-      recorder_.record_all(topic, now, now, std::move(message), type);
-    } else if (!recorder_.record(topic, now, now, std::move(message), type)) {
+      recorder_.record_all(topic, came, came, std::move(message), type);
+    } else if (!recorder_.record(topic, came, came, std::move(message), type)) {
       context_.count("lost");
     }
   }

@@ -20,16 +20,17 @@ using PlayedTopics =
               msgs::topics::TrueOdometry, msgs::topics::TrueField, msgs::topics::TrueInstances,
               msgs::topics::RunStatus>;
 
+/// The table of furrow_msgs, row by row.
 using AllTopics =
     TopicList<msgs::topics::Clock, msgs::topics::CameraImage, msgs::topics::CameraDepth,
               msgs::topics::CameraInfo, msgs::topics::WheelOdometry, msgs::topics::Imu,
               msgs::topics::GnssFix, msgs::topics::RobotOdometry, msgs::topics::Transforms,
               msgs::topics::StaticTransforms, msgs::topics::RobotDescription,
               msgs::topics::Instances, msgs::topics::Tracks, msgs::topics::Plan,
-              msgs::topics::PlannerHeartbeat, msgs::topics::AxisState, msgs::topics::AxisEvent,
-              msgs::topics::JointStates, msgs::topics::EmergencyStop, msgs::topics::ToolReset,
-              msgs::topics::TrueOdometry, msgs::topics::TrueField, msgs::topics::TrueInstances,
-              msgs::topics::TrueSpray, msgs::topics::RunStatus, msgs::topics::RunRecord,
-              msgs::topics::Diagnostics>;
+              msgs::topics::PlannerHeartbeat, msgs::topics::SpeedRequest, msgs::topics::AxisState,
+              msgs::topics::AxisEvent, msgs::topics::JointStates, msgs::topics::EmergencyStop,
+              msgs::topics::ToolReset, msgs::topics::Markers, msgs::topics::TrueOdometry,
+              msgs::topics::TrueField, msgs::topics::TrueInstances, msgs::topics::TrueSpray,
+              msgs::topics::RunStatus, msgs::topics::RunRecord, msgs::topics::Diagnostics>;
 
 }  // namespace furrow::recording

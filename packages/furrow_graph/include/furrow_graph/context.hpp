@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,6 +48,9 @@ class Context {
   [[nodiscard]] virtual const std::string& name() const = 0;
   /// The time of the graph's clock: of the current step in lock-step, else Unix time.
   [[nodiscard]] virtual Time now() const = 0;
+  /// When the message of the current callback came, on the same clock: before now() where it had to
+  /// wait for a thread. @pre Within a callback of an input.
+  [[nodiscard]] virtual Time arrival() const = 0;
   /// The seed of the run; draw streams by the component's name.
   [[nodiscard]] virtual std::uint64_t seed() const = 0;
 
@@ -58,12 +62,17 @@ class Context {
     return parameters;
   }
 
-  /// Calls back for each message, in the order of arrival over all inputs of the component.
+  /// Calls back for each message, in the order of arrival over all inputs of the component. When
+  /// `depth` messages wait the oldest is dropped, counted; without it, as the topic's QoS says.
   template <class T>
-  void input(std::function<void(const std::shared_ptr<const typename T::Message>&)> callback) {
-    bind_input(T::topic(), [callback = std::move(callback)](const MessagePtr& message) {
-      callback(std::static_pointer_cast<const typename T::Message>(message));
-    });
+  void input(std::function<void(const std::shared_ptr<const typename T::Message>&)> callback,
+             std::optional<int> depth = {}) {
+    bind_input(
+        T::topic(),
+        [callback = std::move(callback)](const MessagePtr& message) {
+          callback(std::static_pointer_cast<const typename T::Message>(message));
+        },
+        depth.value_or(T::topic().qos.depth));
   }
   template <class T>
   [[nodiscard]] Output<T> output() {
@@ -82,8 +91,8 @@ class Context {
 
  protected:
   [[nodiscard]] virtual const std::vector<GivenParameter>& given_parameters() const = 0;
-  virtual void bind_input(const msgs::Topic& topic,
-                          std::function<void(const MessagePtr&)> callback) = 0;
+  virtual void bind_input(const msgs::Topic& topic, std::function<void(const MessagePtr&)> callback,
+                          int depth) = 0;
   [[nodiscard]] virtual std::function<void(MessagePtr)> bind_output(const msgs::Topic& topic) = 0;
 };
 
