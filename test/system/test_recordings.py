@@ -174,6 +174,17 @@ class FromRecordingTest(RecordingCase):
                            "weeding_true_detections", "--recording", file, "--out", self.out)
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_a_gap_makes_the_tool_safe_and_the_user_is_told(self):
+        parts = [self.folder / "before.mcap", self.folder / "after.mcap"]
+        for file, *options in ((parts[0], "--to", 4), (parts[1], "--from", 4.3, "--no-latched")):
+            done = self.furrow("bag", "cut", self.recorded, file, *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("run", "--no-wire", "--clock", "lockstep", *SHORT_RUN[:4], "--recording",
+                           *parts, "--out", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = re.findall(r"^  (driver_axis_\d): error: odometry_stale", done.stdout, re.MULTILINE)
+        self.assertEqual(told, [f"driver_axis_{i}" for i in range(1, 5)], done.stdout)
+
     def test_bad_input_is_refused(self):
         graph = ["run", "--no-wire", "--clock", "lockstep", *SHORT_RUN[:4], "--out", self.out]
         garbage = self.folder / "garbage.mcap"

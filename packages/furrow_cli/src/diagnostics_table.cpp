@@ -1,20 +1,25 @@
 #include "diagnostics_table.hpp"
 
-#include <array>
+#include "run_summary.hpp"
 
 namespace furrow::cli {
+namespace {
+
+bool is_of_others(const std::string& name, const diagnostic_msgs::msg::DiagnosticStatus& status,
+                  const std::string& own_process) {
+  return status.hardware_id() != own_process || name.ends_with(": wire");
+}
+
+}  // namespace
 
 ledger::ReportTable diagnostics_table(
     const std::map<std::string, diagnostic_msgs::msg::DiagnosticStatus>& diagnostics,
     const std::string& own_process) {
-  constexpr std::array<const char*, 4> kLevels = {"ok", "warning", "error", "stale"};
   ledger::ReportTable table{"Other processes and the wire",
                             {"process: component", "health", "received", "dropped", "counters"},
                             {}};
   for (const auto& [name, status] : diagnostics) {
-    if (status.hardware_id() == own_process && !name.ends_with(": wire")) continue;
-    std::string health = status.level() < kLevels.size() ? kLevels[status.level()] : "unknown";
-    if (!status.message().empty()) health += ": " + status.message();
+    if (!is_of_others(name, status, own_process)) continue;
     std::string received = "-";
     std::string dropped = "-";
     std::string counters;
@@ -26,9 +31,21 @@ ledger::ReportTable diagnostics_table(
       counters += (counters.empty() ? "" : ", ") + value.key().substr(kCounter.size()) + " " +
                   value.value();
     }
-    table.rows.push_back({name, health, received, dropped, counters});
+    table.rows.push_back(
+        {name, health_text(status.level(), status.message()), received, dropped, counters});
   }
   return table;
+}
+
+std::vector<std::string> not_well(
+    const std::map<std::string, diagnostic_msgs::msg::DiagnosticStatus>& diagnostics,
+    const std::string& own_process) {
+  std::vector<std::string> lines;
+  for (const auto& [name, status] : diagnostics) {
+    if (status.level() == 0 || !is_of_others(name, status, own_process)) continue;
+    lines.push_back(name + ": " + health_text(status.level(), status.message()));
+  }
+  return lines;
 }
 
 }  // namespace furrow::cli

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <thread>
 
@@ -99,7 +101,8 @@ Status write_as_applied(const furrow_msgs::msg::RunRecord& message, const Prepar
 }
 
 int write_report(const ledger::RunRecord& record, const field::FieldModel& field,
-                 const RunOptions& options, std::uint64_t dropped) {
+                 const RunOptions& options, std::uint64_t dropped,
+                 const std::vector<std::string>& not_well) {
   const auto ledger = ledger::account(field, record);
   if (!ledger.ok()) {
     std::cerr << "furrow: the run cannot be accounted for: " << ledger.error().message << '\n';
@@ -112,8 +115,10 @@ int write_report(const ledger::RunRecord& record, const field::FieldModel& field
   }
   std::cout << '\n'
             << ledger->summary.field << " (" << ledger->summary.source << ")\n"
-            << outcome_text(ledger->summary, dropped)
-            << "\nreport: " << (std::filesystem::path(options.out) / "report.html").string()
+            << outcome_text(ledger->summary, dropped);
+  if (!not_well.empty()) std::cout << "\nnot well at the end:\n";
+  for (const std::string& line : not_well) std::cout << "  " << line << '\n';
+  std::cout << "\nreport: " << (std::filesystem::path(options.out) / "report.html").string()
             << '\n';
   return 0;
 }
@@ -215,10 +220,12 @@ int run(const ProcessOptions& process_options) {
   const auto components = runtime.status();
   ledger::RunRecord record =
       complete_record(*observer.record(), prepared, options, components, wall.count());
+  std::vector<std::string> unwell = not_well(components);
   if (!observer.diagnostics().empty()) {
     record.tables.push_back(diagnostics_table(observer.diagnostics(), process.name));
+    std::ranges::move(not_well(observer.diagnostics(), process.name), std::back_inserter(unwell));
   }
-  return write_report(record, field, options, dropped_messages(components));
+  return write_report(record, field, options, dropped_messages(components), unwell);
 }
 
 }  // namespace

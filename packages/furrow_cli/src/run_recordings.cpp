@@ -66,6 +66,8 @@ void replace_world(graph::GraphSpec& graph, graph::Registry& registry, const Run
     files.push_back(std::filesystem::absolute(file).string());
   }
   playback.parameters = {{"files", files, where}};
+  // As real sensors, it is late for no component that computes.
+  playback.dedicated_thread = true;
   std::vector<graph::ComponentSpec> kept = {std::move(playback)};
   for (graph::ComponentSpec& spec : graph.components) {
     if (spec.class_name == "robot_simulator") {

@@ -1,23 +1,11 @@
 #include "run_summary.hpp"
 
+#include <array>
+
 #include "console.hpp"
 
 namespace furrow::cli {
 namespace {
-
-std::string level_name(graph::HealthLevel level) {
-  switch (level) {
-    case graph::HealthLevel::kOk:
-      return "ok";
-    case graph::HealthLevel::kWarn:
-      return "warning";
-    case graph::HealthLevel::kError:
-      return "error";
-    case graph::HealthLevel::kStale:
-      break;
-  }
-  return "stale";
-}
 
 std::string percent(std::int64_t part, std::int64_t whole) {
   return whole == 0
@@ -31,13 +19,30 @@ std::string millimetres(const std::optional<double>& value) {
 
 }  // namespace
 
+std::string health_text(std::uint8_t level, const std::string& message) {
+  constexpr std::array<const char*, 4> kLevels = {"ok", "warning", "error", "stale"};
+  const std::string name = level < kLevels.size() ? kLevels[level] : "unknown";
+  return message.empty() ? name : name + ": " + message;
+}
+
+std::vector<std::string> not_well(std::span<const graph::ComponentStatus> components) {
+  std::vector<std::string> lines;
+  for (const graph::ComponentStatus& component : components) {
+    const graph::Health& health = component.health;
+    if (health.level == graph::HealthLevel::kOk) continue;
+    lines.push_back(component.name + ": " +
+                    health_text(static_cast<std::uint8_t>(health.level), health.message));
+  }
+  return lines;
+}
+
 std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentStatus> components,
                                                bool with_times) {
-  ledger::ReportTable health{
+  ledger::ReportTable table{
       "Components", {"component", "class", "health", "received", "dropped", "counters"}, {}};
   if (with_times) {
-    health.header.insert(health.header.end() - 1, {"busy", "longest call", "timers", "missed",
-                                                   "late p99", "late max", "thread"});
+    table.header.insert(table.header.end() - 1, {"busy", "longest call", "timers", "missed",
+                                                 "late p99", "late max", "thread"});
   }
   for (const graph::ComponentStatus& component : components) {
     std::uint64_t received = 0;
@@ -50,9 +55,9 @@ std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentS
     for (const auto& [name, count] : component.health.counters) {
       counters += (counters.empty() ? "" : ", ") + name + " " + std::to_string(count);
     }
-    std::string level = level_name(component.health.level);
-    if (!component.health.message.empty()) level += ": " + component.health.message;
-    std::vector<std::string> row = {component.name, component.class_name, level,
+    const std::string health =
+        health_text(static_cast<std::uint8_t>(component.health.level), component.health.message);
+    std::vector<std::string> row = {component.name, component.class_name, health,
                                     std::to_string(received), std::to_string(dropped)};
     if (with_times) {
       row.push_back(number(component.busy_s, 2) + " s");
@@ -64,9 +69,9 @@ std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentS
       row.push_back(component.thread);
     }
     row.push_back(counters);
-    health.rows.push_back(std::move(row));
+    table.rows.push_back(std::move(row));
   }
-  return {health};
+  return {table};
 }
 
 std::string outcome_text(const ledger::Summary& s, std::uint64_t dropped) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,12 @@
 #include "furrow_ledger/ledger.hpp"
 
 namespace furrow::cli {
+
+/// "ok", or "error: why"; levels are those of diagnostic_msgs/DiagnosticStatus.
+[[nodiscard]] std::string health_text(std::uint8_t level, const std::string& message);
+
+/// A line for each component that is not well: "driver_axis_1: error: why".
+[[nodiscard]] std::vector<std::string> not_well(std::span<const graph::ComponentStatus> components);
 
 /// What the components did, for the report. Wall-clock figures are left out in lock-step, so that
 /// two runs of one seed give the same report.
