@@ -35,16 +35,16 @@ std::optional<std::size_t> Node::input_of(const std::string& topic) const {
 }
 
 void Node::push(std::size_t input, MessagePtr message) {
+  Mail oldest;  // freed after the lock: that of an image takes a while
   const std::lock_guard lock(mutex_);
   Input& target = inputs_[input];
   ++target.received;
   if (target.waiting == target.depth) {
-    const auto oldest = std::ranges::find(mail_, input, &Item::input);
-    mail_.erase(oldest);
+    oldest = mail_.take_oldest_of(input);
     --target.waiting;
     ++target.dropped;
   }
-  mail_.push_back({input, std::move(message), host_.now()});
+  mail_.push({input, std::move(message), host_.now()});
   ++target.waiting;
 }
 
@@ -69,18 +69,17 @@ std::size_t Node::run_messages(const std::function<void()>& between) {
   }
   std::size_t handled = 0;
   for (; handled < budget; ++handled) {
-    Item item;
+    Mail mail;
     {
       const std::lock_guard lock(mutex_);
       if (mail_.empty()) break;
-      item = std::move(mail_.front());
-      mail_.pop_front();
-      --inputs_[item.input].waiting;
+      mail = mail_.pop();
+      --inputs_[mail.input].waiting;
     }
     if (handled > 0 && between) between();
-    Input& input = inputs_[item.input];
-    arrival_ = item.arrived;
-    call([&] { input.callback(item.message); }, &input);
+    Input& input = inputs_[mail.input];
+    arrival_ = mail.arrived;
+    call([&] { input.callback(mail.message); }, &input);
   }
   return handled;
 }

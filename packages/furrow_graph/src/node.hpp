@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -14,6 +13,7 @@
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "lateness.hpp"
+#include "mailbox.hpp"
 
 namespace furrow::graph {
 
@@ -102,11 +102,6 @@ class Node final : public Context {
   [[nodiscard]] std::function<void(MessagePtr)> bind_output(const msgs::Topic& topic) override;
 
  private:
-  struct Item {
-    std::size_t input;
-    MessagePtr message;
-    Time arrived;
-  };
   struct Input {
     std::string topic;
     std::size_t depth;
@@ -135,7 +130,7 @@ class Node final : public Context {
 
   mutable std::mutex mutex_;  // of what follows
   std::vector<Input> inputs_;
-  std::deque<Item> mail_;  // in the order of arrival over all inputs
+  Mailbox mail_;
   Health health_;
   std::uint64_t callbacks_ = 0;
   double busy_s_ = 0.0;
