@@ -19,6 +19,11 @@ macro(furrow_package)
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
   set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
   set(BUILD_SHARED_LIBS ON)
+  # A small source spends most of its compile time on headers (Eigen, OpenCV, GoogleTest, messages).
+  # A batch of sources parses them once. So a name in an anonymous namespace is unique in its target,
+  # or its file is named in furrow_compile_alone().
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
   # Binaries start from any folder, also without the setup script.
   set(CMAKE_INSTALL_RPATH "$ORIGIN;$ORIGIN/../lib")
   set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
@@ -45,11 +50,17 @@ macro(furrow_package)
   endif()
 endmacro()
 
+# Sources that are not compiled in a batch with others of their target.
+function(furrow_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 function(furrow_warnings target)
-  # Designated initializers leave members at their defaults on purpose.
+  # Designated initializers leave members at their defaults on purpose. In a batch of sources the
+  # compiler takes every source but the first for a header (subobject-linkage).
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                          -Wno-sign-conversion -Wno-missing-field-initializers -Wnon-virtual-dtor
-                         -Woverloaded-virtual -Werror)
+                         -Woverloaded-virtual -Wno-subobject-linkage -Werror)
 endfunction()
 
 # A library with its public headers under include/, installed and exported.
