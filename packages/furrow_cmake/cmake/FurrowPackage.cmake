@@ -125,6 +125,8 @@ function(furrow_test target)
   add_executable(${target} ${ARG_SOURCES})
   furrow_warnings(${target})
   target_link_libraries(${target} PRIVATE ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  # A test's own code runs once: a quarter of its compile time is worth more than its speed.
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_compile_definitions(${target} PRIVATE
     FURROW_TEST_DATA_DIR="${CMAKE_CURRENT_SOURCE_DIR}/test")
   if(ARG_AMONG_SYSTEM_TESTS)
