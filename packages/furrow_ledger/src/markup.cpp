@@ -1,9 +1,6 @@
 #include "furrow_ledger/markup.hpp"
 
-#include <array>
 #include <cassert>
-#include <charconv>
-#include <cmath>
 
 namespace furrow::ledger {
 namespace {
@@ -69,17 +66,6 @@ std::string escape(std::string_view text) {
     text.remove_prefix(length == 0 ? 1 : length);
   }
   return result;
-}
-
-std::string fixed(double value, int decimals) {
-  if (!std::isfinite(value)) return "-";
-  std::array<char, 400> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, decimals);
-  std::string text(buffer.data(), end.ptr);
-  // No "-0.00".
-  if (text.find_first_not_of("-0.") == std::string::npos && text.front() == '-') text.erase(0, 1);
-  return text;
 }
 
 std::string number(double value, int decimals) {

@@ -6,17 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "furrow_core/text.hpp"
+
 namespace furrow::ledger {
 
-/// Text made safe inside HTML and SVG, also inside quoted attributes: & < > " ' are replaced, and
-/// control characters that XML forbids, and bytes that are not UTF-8, become U+FFFD.
+/// Text escaped for HTML and SVG, also for quoted attributes: & < > " ' are replaced. Control
+/// characters that XML forbids, and bytes that are not UTF-8, become U+FFFD.
 [[nodiscard]] std::string escape(std::string_view text);
 
 /// A number with at most `decimals` digits after the point and no trailing zeros; "-" when not
 /// finite. The same on every locale.
 [[nodiscard]] std::string number(double value, int decimals = 3);
-/// With exactly `decimals` digits.
-[[nodiscard]] std::string fixed(double value, int decimals);
+using furrow::fixed;
 
 using Attribute = std::pair<std::string_view, std::string>;
 using Attributes = std::initializer_list<Attribute>;
