@@ -88,6 +88,13 @@ CMAKE_NAMES = {
 # Of the compiler, or found by furrow_package().
 CMAKE_IGNORED = {"Threads", "PkgConfig", "Python3", "GTest"}
 
+# Libraries that must not be loaded, directly or through others: pattern and reason.
+LOAD_LIMITS = {
+    "libfurrow_component_axis_driver.so": (
+        re.compile(r"libopencv_|libfurrow_(ledger|field|vision|simulation|planning|tracking)\."),
+        "an axis driver runs on a small computer"),
+}
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 FOREACH = re.compile(r"foreach\((\w+)\s+IN\s+ITEMS\s+([^)]*)\)(.*?)endforeach\(\)", re.DOTALL)
 FIND = re.compile(r"find_package\(\s*([\w.+-]+)|pkg_check_modules\(\s*\w+\s+(?:(?:REQUIRED|"
@@ -199,17 +206,42 @@ def check_links(package):
                 ", ".join(sorted(users))
 
 
+def loaded(name, needs):
+    """The libraries that one loads, directly and through others, each with who loads it."""
+    found, waiting = {}, [name]
+    while waiting:
+        user = waiting.pop()
+        for library in needs.get(user, []):
+            if library not in found:
+                found[library] = user
+                waiting.append(library)
+    return found
+
+
+def check_loads(needs):
+    """Libraries that must not be loaded. `needs`: the direct dependencies of each library."""
+    for name, (pattern, reason) in LOAD_LIMITS.items():
+        if name not in needs:
+            yield f"{name}: not found, so its libraries cannot be checked"
+        for library, user in sorted(loaded(name, needs).items()):
+            if pattern.match(library):
+                yield f"{name}: loads {library} through {user}; {reason}"
+
+
 def check_binaries(install):
     """What the built libraries and programs need, as the linker wrote it down."""
+    needs = {}
     for path in sorted([*install.glob("furrow_*/lib/*.so"), *install.glob("furrow_*/bin/*")]):
         package = path.relative_to(install).parts[0]
         dynamic = subprocess.run(["readelf", "--dynamic", str(path)], capture_output=True,
                                  text=True, check=False).stdout
-        for needed in re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic):
+        needs[path.name] = re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic)
+        for needed in needs[path.name]:
             if re.match(r"libfast(rtps|dds)\.", needed) and package != "furrow_dds":
                 yield f"{path.relative_to(install)}: links {needed}"
             if package in ALGORITHMS and re.match(r"libfurrow_(graph|msgs|dds)\.", needed):
                 yield f"{path.relative_to(install)}: an algorithm library links {needed}"
+    yield from check_loads(needs)
 
 
 def check(root):

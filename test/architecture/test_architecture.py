@@ -143,6 +143,19 @@ class ArchitectureTest(unittest.TestCase):
         self.assertIn("packages/furrow_core: holds the package 'furrow_cmake'",
                       list(architecture.check(self.root)))
 
+    def test_library_loaded_through_another(self):
+        driver = "libfurrow_component_axis_driver.so"
+        needs = {driver: ["libfurrow_a.so", "libc.so.6"], "libfurrow_a.so": ["libfurrow_b.so"],
+                 "libfurrow_b.so": ["libfurrow_a.so"]}
+        self.assertEqual(list(architecture.check_loads(needs)), [])
+        needs["libfurrow_b.so"].append("libopencv_core.so.406")
+        self.assertEqual(len(list(architecture.check_loads(needs))), 1)
+        self.assertIn("loads libopencv_core.so.406 through libfurrow_b.so",
+                      next(architecture.check_loads(needs)))
+
+    def test_library_that_is_missing_is_not_passed(self):
+        self.assertIn("not found", next(architecture.check_loads({})))
+
 
 if __name__ == "__main__":
     unittest.main()

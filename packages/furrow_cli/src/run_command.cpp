@@ -12,7 +12,8 @@
 #include "console.hpp"
 #include "diagnostics_table.hpp"
 #include "furrow_components/application_record.hpp"
-#include "furrow_components/conversions.hpp"
+#include "furrow_components/field_conversion.hpp"
+#include "furrow_components/run_record_conversion.hpp"
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "graph_setup.hpp"
@@ -72,11 +73,10 @@ geometry::ToolModel tool_of(const PreparedGraph& prepared) {
   return file.empty() ? geometry::ToolModel() : geometry::load_tool_model(file);
 }
 
-ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
-                                  const PreparedGraph& prepared, const RunOptions& options,
-                                  const std::vector<graph::ComponentStatus>& components,
-                                  double wall_s) {
-  ledger::RunRecord record = components::from_msg(message, prepared.axes);
+/// Adds what the command knows of a run to its record.
+void complete_record(ledger::RunRecord& record, const furrow_msgs::msg::RunRecord& message,
+                     const PreparedGraph& prepared, const RunOptions& options,
+                     const std::vector<graph::ComponentStatus>& components, double wall_s) {
   record.info.simulated = !message.field().source().empty();
   record.info.seed = options.seed;
   record.info.version = FURROW_VERSION;
@@ -91,7 +91,6 @@ ledger::RunRecord complete_record(const furrow_msgs::msg::RunRecord& message,
   for (ledger::ReportTable& table : health_tables(components, real)) {
     record.tables.push_back(std::move(table));
   }
-  return record;
 }
 
 Status write_as_applied(const furrow_msgs::msg::RunRecord& message, const PreparedGraph& prepared,
@@ -218,14 +217,18 @@ int run(const ProcessOptions& process_options) {
   }
   const auto field = components::from_msg(observer.record()->field());
   const auto components = runtime.status();
-  ledger::RunRecord record =
-      complete_record(*observer.record(), prepared, options, components, wall.count());
+  auto record = components::from_msg(*observer.record(), prepared.axes);
+  if (!record.ok()) {
+    std::cerr << "furrow: run/record: " << record.error().message << '\n';
+    return 1;
+  }
+  complete_record(*record, *observer.record(), prepared, options, components, wall.count());
   std::vector<std::string> unwell = not_well(components);
   if (!observer.diagnostics().empty()) {
-    record.tables.push_back(diagnostics_table(observer.diagnostics(), process.name));
+    record->tables.push_back(diagnostics_table(observer.diagnostics(), process.name));
     std::ranges::move(not_well(observer.diagnostics(), process.name), std::back_inserter(unwell));
   }
-  return write_report(record, field, options, dropped_messages(components), unwell);
+  return write_report(*record, field, options, dropped_messages(components), unwell);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "furrow_components/field_conversion.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"

@@ -4,8 +4,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "furrow_components/conversions.hpp"
+#include "furrow_components/field_conversion.hpp"
 #include "furrow_components/field_source.hpp"
+#include "furrow_components/run_record_conversion.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_field/field_csv.hpp"
 #include "furrow_field/generator.hpp"
@@ -71,7 +72,8 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
     throw std::runtime_error(name_of(region) + ": the run ended early: " + result.reason);
   }
   const auto field = components::from_msg(observer.record()->field());
-  ledger::RunRecord record = components::from_msg(*observer.record(), prepared.axes);
+  ledger::RunRecord record =
+      value_or_throw(components::from_msg(*observer.record(), prepared.axes));
   record.info.simulated = true;
   record.info.seed = static_cast<std::int64_t>(seed);
   record.info.version = FURROW_VERSION;

@@ -18,6 +18,7 @@
 #include "furrow_dds/test_domain.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/topics.hpp"
 
 extern char** environ;
@@ -113,7 +114,7 @@ class Feeder final : public graph::Component {
     for (std::int64_t i = std::max<std::int64_t>(1, first - 2); i < first + 12; ++i) {
       auto& track = tracks.tracks().emplace_back();
       track.id(i);
-      track.state(1);
+      track.state(msgs::to_msg(msgs::TrackState::kConfirmed));
       track.confirmed(true);
       track.position(
           components::to_point(Eigen::Vector2d(kSpacing_m * static_cast<double>(i), 0.0)));
@@ -128,7 +129,7 @@ class Feeder final : public graph::Component {
       furrow_msgs::msg::AxisState state;
       state.header(components::header(now, components::kBaseFrame));
       state.axis(absent);
-      state.fault("absent");
+      state.cause(msgs::to_msg(msgs::SafetyCause::kDriveFault));
       state_out_.publish(std::move(state));
     }
   }
@@ -151,21 +152,22 @@ class Feeder final : public graph::Component {
   }
 
   void take(const furrow_msgs::msg::AxisEvent& event) {
-    if (event.event() == "reset") {
+    if (event.event() == msgs::AxisEventKind::kReset) {
       stage_ = Stage::kSpraying;
-    } else if (event.event() == "made_safe" && stage_ == Stage::kKilled) {
+    } else if (event.event() == msgs::AxisEventKind::kSafeState && stage_ == Stage::kKilled) {
       stage_ = Stage::kSafe;
       outcome_.shut_after_ms.push_back(1e3 *
                                        (graph::from_msg(event.closed()) - killed_).to_seconds());
-      outcome_.causes.push_back(event.cause());
+      outcome_.causes.push_back(msgs::to_string(event.cause()));
       outcome_.planner.reap();
       if (static_cast<int>(outcome_.causes.size()) == outcome_.wanted) {
         context_.request_stop("enough");
       } else {
         outcome_.planner.start(outcome_.domain);
       }
-    } else if (event.event() == "made_safe") {
-      context_.request_stop("made safe by " + event.cause() + ", and nobody was killed");
+    } else if (event.event() == msgs::AxisEventKind::kSafeState) {
+      context_.request_stop("safe state by " + msgs::to_string(event.cause()) +
+                            ", although the planner was not killed");
     }
   }
 

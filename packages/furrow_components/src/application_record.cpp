@@ -9,6 +9,7 @@
 #include "furrow_field/field_geojson.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_ledger/markup.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
 namespace {
@@ -17,6 +18,7 @@ using actuation::Application;
 using furrow_msgs::msg::RunRecord;
 using ledger::fixed;
 using ledger::ReportTable;
+using msgs::AxisEventKind;
 
 const geometry::AxisModel* find_axis(const geometry::ToolModel& tool, const std::string& name) {
   const auto it = std::ranges::find(tool.axes, name, &geometry::AxisModel::name);
@@ -26,8 +28,8 @@ const geometry::AxisModel* find_axis(const geometry::ToolModel& tool, const std:
 ReportTable nozzle_table(const RunRecord& record) {
   ReportTable table{"Use by nozzle", {"axis", "openings", "open", "volume", "ended as"}, {}};
   for (const auto& state : record.axes()) {
-    std::string ended = state.mode();
-    if (!state.fault().empty()) ended += ": " + state.fault();
+    std::string ended = msgs::to_string(state.mode());
+    if (state.cause() != msgs::SafetyCause::kNone) ended += ": " + msgs::to_string(state.cause());
     table.rows.push_back({state.axis(), std::to_string(state.openings()),
                           fixed(state.open_s(), 2) + " s", fixed(state.volume_ml(), 1) + " ml",
                           ended});
@@ -97,14 +99,14 @@ ReportTable area_table(const RunRecord& record, const std::vector<Application>& 
 }
 
 ReportTable safety_table(const RunRecord& record) {
-  ReportTable table{"Made safe", {"at", "axis", "cause", "valve shut after"}, {}};
+  ReportTable table{"Safe states", {"at", "axis", "cause", "valve shut after"}, {}};
   for (const auto& event : record.events()) {
-    const bool reset = event.event() == "reset";
-    if (!reset && event.event() != "made_safe") continue;
+    const bool reset = event.event() == AxisEventKind::kReset;
+    if (!reset && event.event() != AxisEventKind::kSafeState) continue;
     const Time at = graph::from_msg(event.header().stamp());
     const Duration took = graph::from_msg(event.closed()) - graph::from_msg(event.opened());
     table.rows.push_back({fixed(at.to_seconds(), 3) + " s", event.axis(),
-                          reset ? "reset" : event.cause(),
+                          reset ? "reset" : msgs::to_string(event.cause()),
                           reset ? "" : fixed(1e3 * took.to_seconds(), 2) + " ms"});
   }
   return table;
@@ -116,7 +118,7 @@ std::vector<Application> applications_of(const RunRecord& record, const geometry
   std::vector<Application> applications;
   for (const auto& event : record.events()) {
     const geometry::AxisModel* axis = find_axis(tool, event.axis());
-    if (event.event() != "sprayed" || axis == nullptr) continue;
+    if (event.event() != AxisEventKind::kSprayed || axis == nullptr) continue;
     const Time opened = graph::from_msg(event.opened());
     applications.push_back({.axis = event.axis(),
                             .time = opened,

@@ -1,15 +1,14 @@
 #include "axis_diagnostics.hpp"
 
+#include "furrow_core/text.hpp"
 #include "furrow_graph/health.hpp"
-#include "furrow_ledger/markup.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
-
 diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& component,
                                                        const furrow_msgs::msg::AxisState& state,
                                                        Time cause_found,
                                                        const std::string& refusal) {
-  using ledger::fixed;
   diagnostic_msgs::msg::DiagnosticArray array;
   array.header().stamp(state.header().stamp());
   auto& status = array.status().emplace_back();
@@ -19,11 +18,12 @@ diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& compon
     status.level(static_cast<std::uint8_t>(level));
     status.message(message);
   };
-  if (!state.fault().empty()) {
+  if (state.cause() != msgs::SafetyCause::kNone) {
     set(graph::HealthLevel::kError,
-        state.fault() + " at " + fixed(cause_found.to_seconds(), 3) + " s");
-  } else if (state.mode() != "running") {
-    set(graph::HealthLevel::kWarn, refusal.empty() ? state.mode() : "drive: " + refusal);
+        msgs::to_string(state.cause()) + " at " + fixed(cause_found.to_seconds(), 3) + " s");
+  } else if (state.mode() != msgs::AxisMode::kRunning) {
+    set(graph::HealthLevel::kWarn,
+        refusal.empty() ? msgs::to_string(state.mode()) : "drive: " + refusal);
   } else {
     set(graph::HealthLevel::kOk, "running");
   }
@@ -32,8 +32,8 @@ diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& compon
     entry.key(key);
     entry.value(text);
   };
-  value("drive", state.state());
-  value("mode", state.mode());
+  value("drive", msgs::to_string(state.state()));
+  value("mode", msgs::to_string(state.mode()));
   value("position_m", fixed(state.position_m(), 4));
   value("travel_m", fixed(state.travel_m(), 3));
   value("openings", std::to_string(state.openings()));

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "axis_conversion.hpp"
 #include "axis_diagnostics.hpp"
 #include "axis_driver_parameters.hpp"
 #include "furrow_actuation/axis_controller.hpp"
 #include "furrow_actuation/drive_supervisor.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_components/nozzle_file.hpp"
+#include "furrow_core/text.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -22,6 +24,7 @@ namespace {
 namespace topics = msgs::topics;
 using actuation::ControllerEvent;
 using actuation::ControllerEventKind;
+using msgs::AxisEventKind;
 
 const geometry::AxisModel& find_axis(const geometry::ToolModel& tool, const std::string& name) {
   const auto it = std::ranges::find(tool.axes, name, &geometry::AxisModel::name);
@@ -34,26 +37,6 @@ AxisDriverParameters with_nozzle_file(AxisDriverParameters parameters) {
     parameters.nozzle = load_nozzle(parameters.nozzle_file, parameters.axis);
   }
   return parameters;
-}
-
-/// What the ledger calls it when a stop was not sprayed.
-std::string reason_name(actuation::SkipReason reason) {
-  using actuation::SkipReason;
-  switch (reason) {
-    case SkipReason::kNone:
-      return "sprayed";
-    case SkipReason::kLate:
-    case SkipReason::kUnreachable:
-      return "unreachable";
-    case SkipReason::kStale:
-      return "stale";
-    case SkipReason::kProtectedCrop:
-      return "protected_crop";
-    case SkipReason::kFault:
-    case SkipReason::kStanding:
-      break;
-  }
-  return "fault";
 }
 
 /// Drives one axis and its nozzle.
@@ -119,24 +102,13 @@ class AxisDriverComponent final : public graph::Component {
     stops_.clear();
     const Time stamp = graph::from_msg(plan.header().stamp());
     if (route != plan.routes().end()) {
-      for (const auto& stop : route->stops()) stops_.push_back(to_stop(stop, stamp));
+      for (const auto& stop : route->stops()) stops_.push_back(from_msg(stop, stamp));
     }
     // The plan's stamp is that of its newest image; for the deadline it counts when it came.
     if (const Status taken = controller_.set_plan(context_.now(), stops_); !taken.ok()) {
       context_.count("bad_plans");
       context_.health(graph::HealthLevel::kWarn, taken.error().message);
     }
-  }
-
-  static actuation::PlannedStop to_stop(const furrow_msgs::msg::Stop& message, Time observed) {
-    actuation::PlannedStop stop;
-    stop.stop_id = message.id();
-    stop.p_F = from_point(message.aim()).head<2>();
-    for (const std::int64_t track : message.track_ids()) stop.targets.push_back(track);
-    stop.intended = graph::from_msg(message.expected());
-    stop.observed = observed;
-    stop.fire_while_moving = message.while_moving();
-    return stop;
   }
 
   void protect(const furrow_msgs::msg::Tracks& tracks) {
@@ -216,33 +188,33 @@ class AxisDriverComponent final : public graph::Component {
         break;
       case ControllerEventKind::kStopSkipped:
         context_.count("skipped_" + std::string(actuation::to_string(event.reason)));
-        event_out_.publish(to_msg(event, reason_name(event.reason)));
+        event_out_.publish(to_msg(event, axis_.name, skip_event(event.reason)));
         break;
       case ControllerEventKind::kMadeSafe:
-        made_safe(event, valve_written);
+        entered_safe_state(event, valve_written);
         break;
       case ControllerEventKind::kReset:
         context_.health(graph::HealthLevel::kOk, "");
-        event_out_.publish(to_msg(event, "reset"));
+        event_out_.publish(to_msg(event, axis_.name, AxisEventKind::kReset));
         break;
     }
   }
 
-  void made_safe(const ControllerEvent& event, Time valve_written) {
-    const std::string cause(actuation::to_string(event.cause));
-    context_.count("made_safe");
+  void entered_safe_state(const ControllerEvent& event, Time valve_written) {
+    const std::string cause(msgs::to_string(safety_cause(event.cause)));
+    context_.count("safe_states");
     context_.health(graph::HealthLevel::kError,
-                    cause + " at " + std::to_string(event.time.to_seconds()) + " s");
-    auto message = to_msg(event, "made_safe");
-    message.cause(cause);
+                    cause + " at " + fixed(event.time.to_seconds(), 3) +
+                        " s; the axis stopped and the valve is shut until tool/reset");
+    auto message = to_msg(event, axis_.name, AxisEventKind::kSafeState);
     message.opened(graph::to_msg(event.time));
     message.closed(graph::to_msg(valve_written));
     event_out_.publish(std::move(message));
   }
 
   void opened(const ControllerEvent& event, Time valve_written) {
-    // A spray that was only acted out treats nothing.
-    sprays_.open(to_msg(event, event.dry_run ? "dry_run" : "sprayed"), valve_written);
+    const AxisEventKind kind = event.dry_run ? AxisEventKind::kDryRun : AxisEventKind::kSprayed;
+    sprays_.open(to_msg(event, axis_.name, kind), valve_written);
   }
 
   void closed(const ControllerEvent& event, Time valve_written) {
@@ -255,20 +227,6 @@ class AxisDriverComponent final : public graph::Component {
     sprays_.close(valve_written);
   }
 
-  [[nodiscard]] furrow_msgs::msg::AxisEvent to_msg(const ControllerEvent& event,
-                                                   const std::string& what) const {
-    furrow_msgs::msg::AxisEvent message;
-    message.header(header(event.time, kFieldFrame));
-    message.axis(axis_.name);
-    message.event(what);
-    message.stop_id(event.stop_id);
-    for (std::size_t i = 0; i < event.targets.size(); ++i) {
-      message.track_ids().push_back(event.targets[i]);
-    }
-    message.aim(to_point(event.aim_F));
-    return message;
-  }
-
   void publish_state(Time now) {
     const actuation::AxisReading& reading = driver_->reading();
     if (last_position_m_) travel_m_ += std::abs(reading.position_m - *last_position_m_);
@@ -276,17 +234,17 @@ class AxisDriverComponent final : public graph::Component {
     furrow_msgs::msg::AxisState state;
     state.header(header(now, kBaseFrame));
     state.axis(axis_.name);
-    state.state(std::string(actuation::to_string(reading.state)));
+    state.state(msgs::to_msg(drive_state(reading.state)));
     state.position_m(reading.position_m);
     state.velocity_mps(reading.velocity_mps);
     state.travel_m(travel_m_);
-    state.mode(std::string(actuation::to_string(mode_)));
+    state.mode(msgs::to_msg(axis_mode(mode_)));
     const actuation::NozzleUse use = controller_.use(now);
     state.openings(static_cast<std::uint64_t>(use.openings));
     state.open_s(use.open_s);
     state.volume_ml(use.volume_ml);
     if (mode_ == actuation::ControllerMode::kSafe) {
-      state.fault(std::string(actuation::to_string(cause_)));
+      state.cause(msgs::to_msg(safety_cause(cause_)));
     }
     state_ = state;
     state_out_.publish(std::move(state));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/field_conversion.hpp"
 #include "furrow_components/field_source.hpp"
 #include "furrow_components/image_conversions.hpp"
 #include "furrow_geometry/tool_model.hpp"

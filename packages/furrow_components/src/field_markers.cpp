@@ -7,6 +7,7 @@
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_ledger/palette.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
 
@@ -17,11 +18,7 @@ using visualization_msgs::msg::MarkerArray;
 
 namespace {
 
-// visualization_msgs/Marker.
-constexpr std::int32_t kCylinder = 3;
-constexpr std::int32_t kLineStrip = 4;
-constexpr std::int32_t kAdd = 0;
-constexpr std::int32_t kDelete = 2;
+namespace Constants = visualization_msgs::msg::Marker_Constants;
 
 constexpr double kPlantHeight_m = 0.01;
 constexpr double kSprayHeight_m = 0.004;
@@ -57,7 +54,7 @@ Marker marker(const std_msgs::msg::Header& header, const char* ns, std::int32_t 
   result.ns(ns);
   result.id(id);
   result.type(type);
-  result.action(kAdd);
+  result.action(Constants::ADD);
   result.pose().orientation().w(1.0);
   return result;
 }
@@ -83,9 +80,9 @@ MarkerArray FieldMarkers::plants(const furrow_msgs::msg::Tracks& message) {
   MarkerArray result;
   std::set<std::int32_t> drawn;
   for (const Track& track : message.tracks()) {
-    if (track.state() == kTrackEnded) continue;
+    if (track.state() == msgs::TrackState::kDeleted) continue;
     const std::int32_t id = marker_id(track.id());
-    Marker disc = marker(message.header(), "plants", id, kCylinder);
+    Marker disc = marker(message.header(), "plants", id, Constants::CYLINDER);
     make_disc(disc, track.position(), std::max(track.radius_m(), kSmallestPlant_m), kPlantHeight_m);
     disc.color(plant_color(track));
     result.markers().push_back(std::move(disc));
@@ -93,8 +90,8 @@ MarkerArray FieldMarkers::plants(const furrow_msgs::msg::Tracks& message) {
   }
   for (const std::int32_t id : drawn_plants_) {
     if (drawn.contains(id)) continue;
-    Marker gone = marker(message.header(), "plants", id, kCylinder);
-    gone.action(kDelete);
+    Marker gone = marker(message.header(), "plants", id, Constants::CYLINDER);
+    gone.action(Constants::DELETE);
     result.markers().push_back(std::move(gone));
   }
   drawn_plants_ = std::move(drawn);
@@ -107,7 +104,7 @@ ColorRGBA FieldMarkers::plant_color(const Track& track) const {
   const auto decided = decisions_.find(track.id());
   if (decided == decisions_.end()) return color(ledger::palette::kTreated, alpha);
   // What is to be treated stands out, in the colour that the map has for what was missed.
-  if (decided->second == "treat") return color(ledger::palette::kMissed, alpha);
+  if (decided->second == msgs::DecisionKind::kTreat) return color(ledger::palette::kMissed, alpha);
   return color(ledger::palette::kLeft, alpha);
 }
 
@@ -120,14 +117,14 @@ MarkerArray FieldMarkers::plan(const furrow_msgs::msg::Plan& message) {
   for (const auto& route : message.routes()) {
     const auto axis = axes_.find(route.axis());
     if (axis == axes_.end()) continue;
-    Marker line =
-        marker(message.header(), "plan", static_cast<std::int32_t>(axis->second.index), kLineStrip);
+    Marker line = marker(message.header(), "plan", static_cast<std::int32_t>(axis->second.index),
+                         Constants::LINE_STRIP);
     line.scale().x(kLineWidth_m);
     line.color(color(ledger::axis_color(axis->second.index), kSolid));
     for (const auto& stop : route.stops()) line.points().push_back(stop.aim());
     // RViz refuses a line of one point.
     if (line.points().size() == 1) line.points().push_back(line.points().front());
-    if (line.points().empty()) line.action(kDelete);
+    if (line.points().empty()) line.action(Constants::DELETE);
     result.markers().push_back(std::move(line));
   }
   return result;
@@ -136,8 +133,8 @@ MarkerArray FieldMarkers::plan(const furrow_msgs::msg::Plan& message) {
 MarkerArray FieldMarkers::spray(const furrow_msgs::msg::AxisEvent& message) {
   MarkerArray result;
   const auto axis = axes_.find(message.axis());
-  if (message.event() != "sprayed" || axis == axes_.end()) return result;
-  Marker disc = marker(message.header(), "sprays", next_spray_, kCylinder);
+  if (message.event() != msgs::AxisEventKind::kSprayed || axis == axes_.end()) return result;
+  Marker disc = marker(message.header(), "sprays", next_spray_, Constants::CYLINDER);
   next_spray_ = (next_spray_ + 1) % kMaxSprays;
   make_disc(disc, message.landing(), axis->second.footprint_radius_m, kSprayHeight_m);
   disc.color(color(ledger::axis_color(axis->second.index), 0.5F));

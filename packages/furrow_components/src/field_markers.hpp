@@ -41,7 +41,7 @@ class FieldMarkers {
   };
   double crop_threshold_;
   std::map<std::string, Axis> axes_;
-  std::map<std::int64_t, std::string> decisions_;  ///< of the tracks of the newest plan
+  std::map<std::int64_t, furrow_msgs::msg::DecisionKind> decisions_;  ///< of the newest plan
   std::set<std::int32_t> drawn_plants_;
   std::int32_t next_spray_ = 0;
 };

@@ -11,6 +11,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
 namespace {
@@ -69,10 +70,14 @@ class Scorer final : public graph::Component {
       for (const auto& track : message->tracks()) tracks_[track.id()] = track;
     });
     context.input<topics::Plan>([this](const auto& plan) {
-      for (const auto& decision : plan->decisions()) decisions_[decision.track_id()] = decision;
+      for (const auto& decision : plan->decisions()) {
+        if (known(decision.decision())) decisions_[decision.track_id()] = decision;
+      }
     });
     context.input<topics::AxisEvent>([this](const auto& event) {
-      if (bounded(record_.events())) record_.events().push_back(*event);
+      if (known(event->event()) && known(event->cause()) && bounded(record_.events())) {
+        record_.events().push_back(*event);
+      }
     });
     context.input<topics::AxisState>([this](const auto& state) { move(*state); });
     context.input<topics::RunStatus>([this](const auto& status) {
@@ -83,6 +88,14 @@ class Scorer final : public graph::Component {
  private:
   // Far above any run; a flood of messages must not fill the memory.
   static constexpr std::size_t kMaxEntries = 2'000'000;
+
+  /// Whether an enumeration holds one of its constants.
+  template <class Enumeration>
+  bool known(const Enumeration& message) {
+    if (msgs::from_msg(message).ok()) return true;
+    context_.count("unknown_values");
+    return false;
+  }
 
   template <class T>
   bool bounded(const std::vector<T>& list) {

@@ -5,6 +5,7 @@
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
 
@@ -21,7 +22,7 @@ SprayLanding::SprayLanding(graph::Context& context, geometry::ToolModel tool,
 }
 
 void SprayLanding::take(const furrow_msgs::msg::AxisEvent& event) {
-  if (event.event() != "sprayed") return;
+  if (event.event() != msgs::AxisEventKind::kSprayed) return;
   const auto axis = std::ranges::find(tool_.axes, event.axis(), &geometry::AxisModel::name);
   if (axis == tool_.axes.end()) {
     context_.count("events_of_unknown_axes");

@@ -8,6 +8,7 @@
 #include "furrow_components/conversions.hpp"
 #include "furrow_components/observation_conversion.hpp"
 #include "furrow_components/pose_buffer.hpp"
+#include "furrow_components/track_conversion.hpp"
 #include "furrow_components/track_field.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
@@ -229,34 +230,13 @@ class TrackerComponent final : public graph::Component {
     furrow_msgs::msg::Tracks message;
     message.header(header(*newest_used_, kFieldFrame));
     for (const tracking::Track& track : tracker_.tracks()) {
-      message.tracks().push_back(to_msg(track));
+      message.tracks().push_back(to_msg(track, species_names_));
     }
-    // Those that just ended are told once more, so that nobody waits for them.
+    // A deleted track is published once more, so that its readers can forget it.
     for (const tracking::Track& track : tracker_.ended()) {
-      message.tracks().push_back(to_msg(track));
+      message.tracks().push_back(to_msg(track, species_names_));
     }
     out_.publish(std::move(message));
-  }
-
-  [[nodiscard]] furrow_msgs::msg::Track to_msg(const tracking::Track& track) const {
-    furrow_msgs::msg::Track message;
-    message.id(static_cast<std::int64_t>(track.id));
-    message.state(static_cast<std::uint8_t>(track.state));
-    message.confirmed(track.confirmed);
-    message.position(to_point(track.p_F_m));
-    message.covariance_xx_m2(track.covariance_F_m2(0, 0));
-    message.covariance_xy_m2(track.covariance_F_m2(0, 1));
-    message.covariance_yy_m2(track.covariance_F_m2(1, 1));
-    message.radius_m(track.radius_m);
-    message.area_mm2(track.area_mm2);
-    message.crop_probability(track.class_probability[0]);
-    if (const int species = track.species(); species >= 0) {
-      message.species(species_names_[static_cast<std::size_t>(species)]);
-    }
-    message.views(static_cast<std::uint32_t>(track.views));
-    message.first_seen(graph::to_msg(track.first_seen));
-    message.last_seen(graph::to_msg(track.last_seen));
-    return message;
   }
 
   static constexpr std::size_t kMaxSpecies = 32;

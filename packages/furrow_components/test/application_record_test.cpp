@@ -9,9 +9,12 @@
 #include "furrow_components/conversions.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
 namespace {
+
+using msgs::AxisEventKind;
 
 geometry::ToolModel tool() {
   geometry::ToolModel tool;
@@ -23,10 +26,10 @@ geometry::ToolModel tool() {
   return tool;
 }
 
-furrow_msgs::msg::AxisEvent event(const std::string& what, double x_m, double y_m) {
+furrow_msgs::msg::AxisEvent event(AxisEventKind kind, double x_m, double y_m) {
   furrow_msgs::msg::AxisEvent event;
   event.axis("axis_1");
-  event.event(what);
+  event.event(msgs::to_msg(kind));
   event.opened(graph::to_msg(Time::from_seconds(10.0)));
   event.closed(graph::to_msg(Time::from_seconds(10.02)));
   event.header().stamp(event.closed());
@@ -40,16 +43,18 @@ furrow_msgs::msg::RunRecord record() {
   record.distance_m(13.0);
   record.field().length_m(10.0);
   record.field().row_y_m({0.25, -0.25});
-  record.events({event("sprayed", 1.0, 0.2), event("sprayed", 2.0, -0.4), event("dry_run", 3, 0),
-                 event("stale", 4.0, 0.0), event("sprayed", 5.0, -0.1)});
-  auto& stranger = record.events().emplace_back(event("sprayed", 6.0, 0.0));
+  record.events({event(AxisEventKind::kSprayed, 1.0, 0.2),
+                 event(AxisEventKind::kSprayed, 2.0, -0.4), event(AxisEventKind::kDryRun, 3, 0),
+                 event(AxisEventKind::kStale, 4.0, 0.0),
+                 event(AxisEventKind::kSprayed, 5.0, -0.1)});
+  auto& stranger = record.events().emplace_back(event(AxisEventKind::kSprayed, 6.0, 0.0));
   stranger.axis("somebody");
-  auto& safe = record.events().emplace_back(event("made_safe", 0.0, 0.0));
-  safe.cause("plan_stale");
+  auto& safe = record.events().emplace_back(event(AxisEventKind::kSafeState, 0.0, 0.0));
+  safe.cause(msgs::to_msg(msgs::SafetyCause::kPlanStale));
   auto& state = record.axes().emplace_back();
   state.axis("axis_1");
-  state.mode("safe");
-  state.fault("plan_stale");
+  state.mode(msgs::to_msg(msgs::AxisMode::kSafe));
+  state.cause(msgs::to_msg(msgs::SafetyCause::kPlanStale));
   state.openings(3);
   state.open_s(0.06);
   state.volume_ml(0.3);

@@ -13,6 +13,7 @@
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/diagnostic_msgs.h"
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::components {
@@ -21,6 +22,10 @@ namespace {
 namespace topics = msgs::topics;
 using furrow_msgs::msg::AxisEvent;
 using furrow_msgs::msg::AxisState;
+using msgs::AxisEventKind;
+using msgs::AxisMode;
+using msgs::DriveState;
+using msgs::SafetyCause;
 
 constexpr double kSpeed_mps = 0.5;
 constexpr double kSpacing_m = 0.2;
@@ -38,15 +43,15 @@ struct World {
   std::vector<diagnostic_msgs::msg::DiagnosticStatus> diagnostics;
   graph::Health health;
 
-  [[nodiscard]] std::vector<AxisEvent> events_named(const std::string& name) const {
+  [[nodiscard]] std::vector<AxisEvent> events_of(AxisEventKind kind) const {
     std::vector<AxisEvent> list;
     std::ranges::copy_if(events, std::back_inserter(list),
-                         [&](const AxisEvent& event) { return event.event() == name; });
+                         [&](const AxisEvent& event) { return event.event() == kind; });
     return list;
   }
   [[nodiscard]] int sprays_between(double from_s, double to_s) const {
     int count = 0;
-    for (const AxisEvent& event : events_named("sprayed")) {
+    for (const AxisEvent& event : events_of(AxisEventKind::kSprayed)) {
       const double at_s = graph::from_msg(event.opened()).to_seconds();
       count += from_s <= at_s && at_s < to_s ? 1 : 0;
     }
@@ -172,12 +177,12 @@ TEST(AxisDriverComponent, SpraysItsPlanAndCountsWhatItUses) {
   const int sprays = world.sprays_between(0.0, 6.0);
   EXPECT_GE(sprays, 13);
   const AxisState& last = world.states.back();
-  EXPECT_EQ(last.mode(), "running");
-  EXPECT_EQ(last.fault(), "");
+  EXPECT_TRUE(last.mode() == AxisMode::kRunning);
+  EXPECT_TRUE(last.cause() == SafetyCause::kNone);
   EXPECT_GE(static_cast<int>(last.openings()), sprays);
   EXPECT_NEAR(last.open_s(), 0.010 * sprays, 0.012);  // of 10 ms each
   EXPECT_NEAR(last.volume_ml(), 5.0 * last.open_s(), 1e-9);
-  for (const AxisEvent& event : world.events_named("sprayed")) {
+  for (const AxisEvent& event : world.events_of(AxisEventKind::kSprayed)) {
     EXPECT_NEAR(event.landing().x(), event.aim().x(), 0.002);
     EXPECT_NEAR(event.landing().y(), event.aim().y(), 0.002);
     EXPECT_NEAR(event.volume_ml(), 0.05, 0.011);
@@ -188,16 +193,16 @@ TEST(AxisDriverComponent, SpraysItsPlanAndCountsWhatItUses) {
 TEST(AxisDriverComponent, ADriveWithoutPowerIsEnabledAndHomedFirst) {
   World world;
   run(world, {{"simulated_start_ready", false}, {"simulated_start_position_m", 0.5}});
-  EXPECT_EQ(world.states.front().state(), "homing");
-  EXPECT_EQ(world.states.back().mode(), "running");
+  EXPECT_TRUE(world.states.front().state() == DriveState::kHoming);
+  EXPECT_TRUE(world.states.back().mode() == AxisMode::kRunning);
   EXPECT_GT(world.sprays_between(3.0, 6.0), 5);
 }
 
 TEST(AxisDriverComponent, ADryRunMovesAndOpensNothing) {
   World world;
   run(world, {{"dry_run", true}});
-  EXPECT_TRUE(world.events_named("sprayed").empty());
-  EXPECT_GT(world.events_named("dry_run").size(), 10u);
+  EXPECT_TRUE(world.events_of(AxisEventKind::kSprayed).empty());
+  EXPECT_GT(world.events_of(AxisEventKind::kDryRun).size(), 10u);
   EXPECT_EQ(world.states.back().openings(), 0u);
   EXPECT_GT(world.states.back().travel_m(), 1.0);
 }
@@ -207,15 +212,15 @@ TEST(AxisDriverComponent, AnEmergencyStopIsLatchedUntilItIsReset) {
   world.emergency_stop = [](double t_s) { return t_s >= 2.0 && t_s < 3.0; };
   world.resets_s = {2.5, 4.0};  // the first while it is still pressed
   run(world);
-  const auto safe = world.events_named("made_safe");
+  const auto safe = world.events_of(AxisEventKind::kSafeState);
   ASSERT_FALSE(safe.empty());
-  EXPECT_EQ(safe[0].cause(), "emergency_stop");
+  EXPECT_TRUE(safe[0].cause() == SafetyCause::kEmergencyStop);
   EXPECT_NEAR(graph::from_msg(safe[0].closed()).to_seconds(), 2.0, 0.004);
   EXPECT_GT(world.sprays_between(0.0, 2.0), 2);
   EXPECT_EQ(world.sprays_between(2.005, 4.0), 0);
   EXPECT_GT(world.sprays_between(4.0, 6.0), 3);
   // What came due meanwhile is in the ledger as a fault.
-  EXPECT_GE(world.events_named("fault").size(), 3u);
+  EXPECT_GE(world.events_of(AxisEventKind::kFault).size(), 3u);
   EXPECT_EQ(world.health.level, graph::HealthLevel::kOk);
 }
 
@@ -223,12 +228,12 @@ TEST(AxisDriverComponent, ASilentPlannerMakesItSafeAndItStaysSo) {
   World world;
   world.planner_alive = [](double t_s) { return t_s < 2.0 || t_s > 3.0; };
   run(world);
-  const auto safe = world.events_named("made_safe");
+  const auto safe = world.events_of(AxisEventKind::kSafeState);
   ASSERT_EQ(safe.size(), 1u);
-  EXPECT_EQ(safe[0].cause(), "peer_lost");
+  EXPECT_TRUE(safe[0].cause() == SafetyCause::kPeerLost);
   EXPECT_NEAR(graph::from_msg(safe[0].closed()).to_seconds(), 1.98 + 0.07, 0.004);
   EXPECT_EQ(world.sprays_between(2.1, 6.0), 0);
-  EXPECT_EQ(world.states.back().fault(), "peer_lost");
+  EXPECT_TRUE(world.states.back().cause() == SafetyCause::kPeerLost);
   EXPECT_EQ(world.health.level, graph::HealthLevel::kError);
   EXPECT_TRUE(world.health.message.starts_with("peer_lost at 2.0")) << world.health.message;
   ASSERT_GE(world.diagnostics.size(), 5u);  // one a second
@@ -244,9 +249,9 @@ TEST(AxisDriverComponent, OdometryThatStopsMakesItSafeUntilReset) {
   world.odometry_comes = [](double t_s) { return t_s < 2.0 || t_s > 3.0; };
   world.resets_s = {4.0};
   run(world);
-  const auto safe = world.events_named("made_safe");
+  const auto safe = world.events_of(AxisEventKind::kSafeState);
   ASSERT_EQ(safe.size(), 1u);
-  EXPECT_EQ(safe[0].cause(), "odometry_stale");
+  EXPECT_TRUE(safe[0].cause() == SafetyCause::kOdometryStale);
   EXPECT_GT(world.sprays_between(4.0, 6.0), 3);
 }
 
@@ -254,9 +259,9 @@ TEST(AxisDriverComponent, AValveThatCannotBeReachedIsAFault) {
   World world;
   // Nobody listens at port 9 of the loopback.
   run(world, {{"valve", std::string("modbus_coils")}, {"coil_port", std::int64_t{9}}});
-  ASSERT_FALSE(world.events_named("made_safe").empty());
-  EXPECT_EQ(world.events_named("made_safe")[0].cause(), "valve_fault");
-  EXPECT_TRUE(world.events_named("sprayed").empty());
+  ASSERT_FALSE(world.events_of(AxisEventKind::kSafeState).empty());
+  EXPECT_TRUE(world.events_of(AxisEventKind::kSafeState)[0].cause() == SafetyCause::kValveFault);
+  EXPECT_TRUE(world.events_of(AxisEventKind::kSprayed).empty());
 }
 
 TEST(AxisDriverComponent, AnEmergencyStopInputThatIsNotThereIsAConfigurationError) {
@@ -269,9 +274,9 @@ TEST(AxisDriverComponent, AnEmergencyStopInputThatIsNotThereIsAConfigurationErro
 TEST(AxisDriverComponent, ADriveThatCannotBeReachedIsWaitedFor) {
   World world;
   run(world, {{"driver", std::string("cia402_modbus")}, {"drive_port", std::int64_t{9}}});
-  EXPECT_TRUE(world.events_named("sprayed").empty());
-  EXPECT_EQ(world.states.back().mode(), "waiting");
-  EXPECT_EQ(world.states.back().state(), "fault");
+  EXPECT_TRUE(world.events_of(AxisEventKind::kSprayed).empty());
+  EXPECT_TRUE(world.states.back().mode() == AxisMode::kWaiting);
+  EXPECT_TRUE(world.states.back().state() == DriveState::kFault);
   EXPECT_EQ(world.health.level, graph::HealthLevel::kWarn);
   EXPECT_EQ(world.health.message, "drive: no connection to the drive");
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
 namespace {
@@ -26,7 +27,7 @@ geometry::ToolModel two_axes() {
 Track track(std::int64_t id, double crop_probability) {
   Track result;
   result.id(id);
-  result.state(1);
+  result.state(msgs::to_msg(msgs::TrackState::kConfirmed));
   result.confirmed(true);
   result.position(to_point(Eigen::Vector2d(1.0, 0.2)));
   result.radius_m(0.03);
@@ -65,10 +66,11 @@ TEST(FieldMarkers, APlantIsADiscWhereItStands) {
 TEST(FieldMarkers, CropTreatedAndSparedWeedsAreToldApart) {
   FieldMarkers markers(two_axes());
   furrow_msgs::msg::Plan plan;
-  for (const auto& [id, what] : {std::pair{2, "treat"}, std::pair{3, "low_priority"}}) {
+  for (const auto& [id, what] :
+       {std::pair{2, msgs::DecisionKind::kTreat}, std::pair{3, msgs::DecisionKind::kLowPriority}}) {
     furrow_msgs::msg::Decision decision;
     decision.track_id(id);
-    decision.decision(what);
+    decision.decision(msgs::to_msg(what));
     plan.decisions().push_back(decision);
   }
   EXPECT_TRUE(markers.plan(plan).markers().empty());
@@ -95,7 +97,7 @@ TEST(FieldMarkers, WhatIsGoneIsDeletedOnce) {
   FieldMarkers markers(two_axes());
   (void)markers.plants(tracks({track(1, 0.0), track(2, 0.0)}));
   Track ended = track(1, 0.0);
-  ended.state(3);
+  ended.state(msgs::to_msg(msgs::TrackState::kDeleted));
   const auto array = markers.plants(tracks({ended, track(2, 0.0)}));
   ASSERT_EQ(array.markers().size(), 2U);
   EXPECT_EQ(array.markers()[1].id(), 1);
@@ -132,9 +134,9 @@ TEST(FieldMarkers, OnlySpraysLeaveAFootprintAndTheirNumberIsBounded) {
   FieldMarkers markers(two_axes());
   furrow_msgs::msg::AxisEvent event;
   event.axis("front");
-  event.event("stale");
+  event.event(msgs::to_msg(msgs::AxisEventKind::kStale));
   EXPECT_TRUE(markers.spray(event).markers().empty());
-  event.event("sprayed");
+  event.event(msgs::to_msg(msgs::AxisEventKind::kSprayed));
   event.landing(to_point(Eigen::Vector2d(4.0, 0.3)));
   const auto array = markers.spray(event);
   ASSERT_EQ(array.markers().size(), 1U);

@@ -16,6 +16,7 @@
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::components {
@@ -24,6 +25,8 @@ namespace {
 namespace topics = msgs::topics;
 using furrow_msgs::msg::Plan;
 using furrow_msgs::msg::Track;
+using msgs::DecisionKind;
+using msgs::SafetyCause;
 
 constexpr double kSpeed_mps = 0.5;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -53,7 +56,7 @@ struct World {
 Track weed(std::int64_t id, double x_m, double y_m, const std::string& species = "thistle") {
   Track track;
   track.id(id);
-  track.state(1);
+  track.state(msgs::to_msg(msgs::TrackState::kConfirmed));
   track.confirmed(true);
   track.position(to_point(Eigen::Vector2d(x_m, y_m)));
   track.area_mm2(500.0);
@@ -103,7 +106,8 @@ class Feeder final : public graph::Component {
       furrow_msgs::msg::AxisState state;
       state.header(header(now, ""));
       state.axis(axis);
-      state.fault(world_.faulty(axis, now.to_seconds()) ? "following_error" : "");
+      const bool faulty = world_.faulty(axis, now.to_seconds());
+      state.cause(msgs::to_msg(faulty ? SafetyCause::kFollowingError : SafetyCause::kNone));
       axis_out_.publish(std::move(state));
     }
     furrow_msgs::msg::Tracks message;
@@ -123,7 +127,8 @@ class Feeder final : public graph::Component {
   graph::Output<topics::AxisState> axis_out_;
 };
 
-void run(World& world, const std::map<std::string, ParameterValue>& parameters = {}) {
+/// Returns the health of the planner at the end.
+graph::Health run(World& world, const std::map<std::string, ParameterValue>& parameters = {}) {
   graph::Registry registry;
   registry.load_library(FURROW_PLANNER_LIBRARY);
   registry.add(feeder_class<Feeder>(world));
@@ -138,6 +143,7 @@ void run(World& world, const std::map<std::string, ParameterValue>& parameters =
   }
   graph::Runtime runtime(spec, registry, {.clock = graph::ClockMode::kLockstep, .threads = 1});
   EXPECT_EQ(runtime.run().reason, "finished");
+  return runtime.status()[0].health;
 }
 
 std::set<std::int64_t> targets_of(const Plan& plan, const std::string& axis) {
@@ -188,7 +194,7 @@ TEST(PlannerComponent, AnAxisThatFailsInTheRowHandsItsTargetsOn) {
     const auto& decision = decisions.at(track.id());
     // Nozzle 2 stands at +0.06 m; what lies a metre ahead of it at the fault is the others'.
     if (track.position().x() < kSpeed_mps * kFault_s + 0.3) continue;
-    EXPECT_EQ(decision.decision(), "treat") << track.id();
+    EXPECT_TRUE(decision.decision() == DecisionKind::kTreat) << track.id();
     EXPECT_NE(decision.axis(), "axis_2") << track.id();
   }
 }
@@ -201,8 +207,8 @@ TEST(PlannerComponent, WithAllAxesFailedEachTargetIsLeftForThatFault) {
   run(world);
   const auto decisions = world.decisions();
   ASSERT_EQ(decisions.size(), 2U);
-  EXPECT_EQ(decisions.at(1).decision(), "fault");
-  EXPECT_EQ(decisions.at(2).decision(), "fault");
+  EXPECT_TRUE(decisions.at(1).decision() == DecisionKind::kFault);
+  EXPECT_TRUE(decisions.at(2).decision() == DecisionKind::kFault);
 }
 
 TEST(PlannerComponent, SaysWhyEachWeedIsLeft) {
@@ -215,7 +221,8 @@ TEST(PlannerComponent, SaysWhyEachWeedIsLeft) {
   const std::map<std::int64_t, std::string> expected = {
       {1, "treat"}, {2, "outside"}, {3, "unreachable"}, {4, "low_priority"}, {5, "protected_crop"}};
   std::map<std::int64_t, std::string> found;
-  for (const auto& [id, decision] : world.decisions()) found[id] = decision.decision();
+  for (const auto& [id, decision] : world.decisions())
+    found[id] = msgs::to_string(decision.decision());
   EXPECT_EQ(found, expected);
 }
 
@@ -230,12 +237,27 @@ TEST(PlannerComponent, TracksThatCannotBeUsedHarmNoOther) {
   run(world,
       {{"harmfulness_scheme", std::string("kappa")}, {"harmfulness_crops", std::string("all")}});
   const auto decisions = world.decisions();
-  EXPECT_EQ(decisions.at(1).decision(), "treat");
-  EXPECT_EQ(decisions.at(2).decision(), "stale");
-  EXPECT_EQ(decisions.at(3).decision(), "stale");
+  EXPECT_TRUE(decisions.at(1).decision() == DecisionKind::kTreat);
+  EXPECT_TRUE(decisions.at(2).decision() == DecisionKind::kStale);
+  EXPECT_TRUE(decisions.at(3).decision() == DecisionKind::kStale);
   std::size_t treats = 0;
   for (const std::string& axis : kAxes) treats += targets_of(world.plans.back(), axis).count(1);
   EXPECT_EQ(treats, 1U) << "given twice, treated once";
+}
+
+TEST(PlannerComponent, CountsUnknownValuesAndTreatsNoWeedOfAnUnknownState) {
+  constexpr std::uint8_t kUnknown = 200;
+  World world;
+  world.tracks = {weed(1, 0.9, 0.0), weed(2, 1.0, 0.3), crop(3, 1.1, -0.4), weed(4, 1.101, -0.4)};
+  world.tracks[1].state().value(kUnknown);
+  world.tracks[2].state().value(kUnknown);
+  const graph::Health health = run(world, {{"protection_zone_mm", 20.0}});
+  const auto decisions = world.decisions();
+  EXPECT_TRUE(decisions.at(1).decision() == DecisionKind::kTreat);
+  EXPECT_FALSE(decisions.contains(2));
+  EXPECT_TRUE(decisions.at(4).decision() == DecisionKind::kProtectedCrop)
+      << "a crop of an unknown state stays protected";
+  EXPECT_GE(health.counters.at("unknown_values"), 2);
 }
 
 TEST(PlannerComponent, TreatsWeedsThatAreNotConfirmedWhereThatIsAskedFor) {
@@ -245,10 +267,10 @@ TEST(PlannerComponent, TreatsWeedsThatAreNotConfirmedWhereThatIsAskedFor) {
     world.tracks[1].confirmed(false);
     run(world, {{"treat_unconfirmed", asked}});
     const auto decisions = world.decisions();
-    EXPECT_EQ(decisions.at(1).decision(), "treat");
+    EXPECT_TRUE(decisions.at(1).decision() == DecisionKind::kTreat);
     EXPECT_EQ(decisions.contains(2), asked);
     if (asked) {
-      EXPECT_EQ(decisions.at(2).decision(), "treat");
+      EXPECT_TRUE(decisions.at(2).decision() == DecisionKind::kTreat);
     }
   }
 }
@@ -295,7 +317,9 @@ TEST(PlannerComponent, AsksTheRobotToSlowForWhatTheAxesWouldNotReach) {
   EXPECT_EQ(world.speed_requests.front().twist().linear().x(), kSpeed_mps);
   EXPECT_NEAR(world.speed_requests.back().twist().linear().x(), kSpeed_mps, 1e-9)
       << "the weeds are past";
-  for (const auto& [id, decision] : world.decisions()) EXPECT_EQ(decision.decision(), "treat");
+  for (const auto& [id, decision] : world.decisions()) {
+    EXPECT_TRUE(decision.decision() == DecisionKind::kTreat) << id;
+  }
 
   // One that does as it likes is asked all the same, but not relied upon.
   world.follow = false;
@@ -303,7 +327,7 @@ TEST(PlannerComponent, AsksTheRobotToSlowForWhatTheAxesWouldNotReach) {
   run(world, parameters);
   int left = 0;
   for (const auto& [id, decision] : world.decisions()) {
-    left += decision.decision() == "unreachable" ? 1 : 0;
+    left += decision.decision() == DecisionKind::kUnreachable ? 1 : 0;
   }
   EXPECT_GT(left, 0);
 }

@@ -14,6 +14,7 @@
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::components {
@@ -127,14 +128,14 @@ class Feeder final : public graph::Component {
   }
 
   void take(const furrow_msgs::msg::AxisEvent& event) {
-    if (event.event() == "reset") {
+    if (event.event() == msgs::AxisEventKind::kReset) {
       waiting_for_valve_ = true;
       return;
     }
-    if (event.event() != "made_safe" || waiting_for_valve_) return;
+    if (event.event() != msgs::AxisEventKind::kSafeState || waiting_for_valve_) return;
     outcome_.shut_after_ms.push_back(1e3 *
                                      (graph::from_msg(event.closed()) - caused_).to_seconds());
-    outcome_.causes.push_back(event.cause());
+    outcome_.causes.push_back(msgs::to_string(event.cause()));
     if (outcome_.causes.size() == kRepetitions) {
       context_.request_stop("enough");
       return;

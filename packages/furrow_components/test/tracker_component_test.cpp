@@ -16,6 +16,7 @@
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::components {
@@ -46,10 +47,10 @@ struct World {
   [[nodiscard]] double newest_stamp_s() const {
     return graph::from_msg(tracks.back().header().stamp()).to_seconds();
   }
-  [[nodiscard]] bool decided(const std::string& what) const {
+  [[nodiscard]] bool decided(msgs::DecisionKind kind) const {
     for (const auto& plan : plans) {
       for (const auto& decision : plan.decisions()) {
-        if (decision.decision() == what) return true;
+        if (decision.decision() == kind) return true;
       }
     }
     return false;
@@ -138,8 +139,8 @@ TEST(TrackerComponent, SoundInputIsTreatedAndNothingIsStale) {
   run(world);
   ASSERT_FALSE(world.tracks.empty());
   EXPECT_GT(world.newest_stamp_s(), world.seconds - 0.5);
-  EXPECT_TRUE(world.decided("treat"));
-  EXPECT_FALSE(world.decided("stale"));
+  EXPECT_TRUE(world.decided(msgs::DecisionKind::kTreat));
+  EXPECT_FALSE(world.decided(msgs::DecisionKind::kStale));
   EXPECT_EQ(world.last.at("tracker").level, graph::HealthLevel::kOk);
   EXPECT_EQ(world.last.at("planner").level, graph::HealthLevel::kOk);
   EXPECT_EQ(world.counter("planner", "stale_tracks"), 0);
@@ -190,7 +191,7 @@ TEST(TrackerComponent, ACovarianceThatIsNotPositiveMakesTheTargetsStale) {
   expect_views_unused(world, "bad_views");
   EXPECT_GT(world.counter("planner", "stale_tracks"), 0);
   EXPECT_EQ(world.last.at("planner").level, graph::HealthLevel::kWarn);
-  EXPECT_TRUE(world.decided("stale"));
+  EXPECT_TRUE(world.decided(msgs::DecisionKind::kStale));
   for (const auto& route : world.plans.back().routes()) EXPECT_TRUE(route.stops().empty());
 }
 

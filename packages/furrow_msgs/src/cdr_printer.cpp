@@ -9,7 +9,7 @@
 namespace furrow::msgs {
 namespace {
 
-/// Walks a CDR form along its schema. After the first fault nothing more is read.
+/// Reads a CDR form along its schema; stops at the first fault.
 class Printer {
  public:
   Printer(const IdlSchema& schema, std::span<const std::byte> body, bool little_endian,
@@ -21,7 +21,7 @@ class Printer {
 
   Result<std::string> print(const std::string& struct_name) {
     members(*schema_.find(struct_name), 0);
-    if (cut_short_) return Error{ErrorCode::kParse, "the message is cut short, or of another type"};
+    if (cut_short_) return Error{ErrorCode::kParse, "the message is truncated or of another type"};
     return text_;
   }
 
@@ -41,7 +41,7 @@ class Printer {
   }
 
   void elements(const std::string& type, std::size_t count, int depth) {
-    const auto* nested = schema_.find(type);
+    const auto* nested = struct_of(type);
     const std::size_t shown = std::min(count, limits_.max_elements);
     if (nested == nullptr) text_ += " [";
     if (nested != nullptr) text_ += count == 0 ? " []\n" : "\n";
@@ -67,7 +67,7 @@ class Printer {
   }
 
   void value(const std::string& type, int depth, const char* space) {
-    if (const auto* nested = schema_.find(type)) {
+    if (const auto* nested = struct_of(type)) {
       text_ += "\n";
       members(*nested, depth + 1);
     } else {
@@ -77,23 +77,40 @@ class Printer {
     }
   }
 
+  /// The members of a type that is printed as a block; null for scalars and enumerations.
+  [[nodiscard]] const std::vector<IdlMember>* struct_of(const std::string& type) const {
+    return schema_.is_enumeration(type) ? nullptr : schema_.find(type);
+  }
+
+  void enumeration(const std::string& type) {
+    const std::size_t start = text_.size();
+    scalar(schema_.find(type)->front().type);
+    const auto constants = schema_.constants_of(type);
+    const auto it = std::ranges::find(constants, text_.substr(start), &IdlConstant::value);
+    text_ += " (" + (it == constants.end() ? std::string("unknown") : it->name) + ")";
+  }
+
   void scalar(const std::string& type) {
     if (type == "boolean") {
       text_ += number<std::uint8_t>() != 0 ? "true" : "false";
-    } else if (type == "octet" || type == "char") {
+    } else if (type == "octet" || type == "char" || type == "uint8") {
       text_ += std::to_string(number<std::uint8_t>());
-    } else if (type == "short") {
+    } else if (type == "int8") {
+      text_ += std::to_string(number<std::int8_t>());
+    } else if (type == "short" || type == "int16") {
       text_ += std::to_string(number<std::int16_t>());
-    } else if (type == "unsigned short") {
+    } else if (type == "unsigned short" || type == "uint16") {
       text_ += std::to_string(number<std::uint16_t>());
-    } else if (type == "long") {
+    } else if (type == "long" || type == "int32") {
       text_ += std::to_string(number<std::int32_t>());
-    } else if (type == "unsigned long") {
+    } else if (type == "unsigned long" || type == "uint32") {
       text_ += std::to_string(number<std::uint32_t>());
-    } else if (type == "long long") {
+    } else if (type == "long long" || type == "int64") {
       text_ += std::to_string(number<std::int64_t>());
-    } else if (type == "unsigned long long") {
+    } else if (type == "unsigned long long" || type == "uint64") {
       text_ += std::to_string(number<std::uint64_t>());
+    } else if (schema_.is_enumeration(type)) {
+      enumeration(type);
     } else if (type == "float") {
       floating(number<float>());
     } else if (type == "double") {
@@ -127,9 +144,8 @@ class Printer {
     return {begin, length - 1};
   }
 
-  // Long sequences of plain numbers (images) are passed over in one step.
   void skip(const std::string& type) {
-    if (const auto* nested = schema_.find(type)) {
+    if (const auto* nested = struct_of(type)) {
       const std::size_t before = text_.size();
       members(*nested, 0);
       text_.resize(before);
@@ -172,7 +188,7 @@ class Printer {
 Result<std::string> print_cdr(const IdlSchema& schema, const std::string& struct_name,
                               std::span<const std::byte> cdr, const PrintLimits& limits) {
   if (schema.find(struct_name) == nullptr) {
-    return Error{ErrorCode::kNotFound, "no struct '" + struct_name + "' in the schema"};
+    return Error{ErrorCode::kNotFound, "the schema has no struct '" + struct_name + "'"};
   }
   if (cdr.size() < kEncapsulationBytes) return Error{ErrorCode::kParse, "no encapsulation header"};
   const bool little_endian = (std::to_integer<int>(cdr[1]) & 1) != 0;

@@ -8,11 +8,27 @@
 namespace furrow::msgs {
 namespace {
 
-constexpr std::array<std::string_view, 12> kPrimitives = {
-    "boolean",       "octet",          "char",
-    "short",         "unsigned short", "long",
-    "unsigned long", "long long",      "unsigned long long",
-    "float",         "double",         "string"};
+constexpr std::array<std::string_view, 20> kPrimitives = {"boolean",
+                                                          "octet",
+                                                          "char",
+                                                          "short",
+                                                          "unsigned short",
+                                                          "long",
+                                                          "unsigned long",
+                                                          "int8",
+                                                          "uint8",
+                                                          "int16",
+                                                          "uint16",
+                                                          "int32",
+                                                          "uint32",
+                                                          "int64",
+                                                          "uint64",
+                                                          "float",
+                                                          "long long",
+                                                          "double",
+                                                          "unsigned long long",
+                                                          "string"};
+constexpr std::string_view kConstants = "_Constants";
 
 struct Token {
   std::string text;
@@ -52,13 +68,16 @@ std::vector<Token> tokenize(std::string_view idl) {
 class Parser {
  public:
   using Structs = std::map<std::string, std::vector<IdlMember>>;
+  using Constants = std::map<std::string, std::vector<IdlConstant>>;
   explicit Parser(std::string_view idl) : tokens_(tokenize(idl)) {}
 
-  Result<Structs> parse() {
+  Status parse() {
     while (at_ < tokens_.size() && !fault_) definition("");
     if (fault_) return *fault_;
-    return structs_;
+    return {};
   }
+  Structs structs;
+  Constants constants;
 
  private:
   [[nodiscard]] std::string_view peek() const {
@@ -66,7 +85,7 @@ class Parser {
   }
   std::string take() {
     if (at_ < tokens_.size()) return tokens_[at_++].text;
-    fail("the text ends too early");
+    fail("unexpected end of the text");
     return "";
   }
   void fail(const std::string& what) {
@@ -76,7 +95,7 @@ class Parser {
   }
   void expect(std::string_view text) {
     if (peek() != text)
-      fail("'" + std::string(text) + "' is needed, not '" + std::string(peek()) + "'");
+      fail("expected '" + std::string(text) + "', found '" + std::string(peek()) + "'");
     if (!fault_) ++at_;
   }
 
@@ -96,10 +115,42 @@ class Parser {
       while (peek() != "}" && !fault_) members.push_back(member());
       expect("}");
       expect(";");
-      structs_[name] = std::move(members);
+      structs[name] = std::move(members);
+    } else if (keyword == "const") {
+      constant(scope);
     } else {
-      fail("'" + keyword + "' is not understood");
+      fail("'" + keyword + "' is not supported");
     }
+  }
+
+  /// Only inside a module NAME_Constants, which ROS 2 attaches to struct NAME.
+  void constant(std::string_view scope) {
+    if (scope.ends_with("::")) scope.remove_suffix(2);
+    if (!scope.ends_with(kConstants)) {
+      fail("a constant must be in a module NAME_Constants");
+      return;
+    }
+    scope.remove_suffix(kConstants.size());
+    IdlConstant constant{.type = type()};
+    if (constant.type == "string" || structs.contains(constant.type)) {
+      fail("a constant of type '" + constant.type + "' is not supported");
+    }
+    constant.name = take();
+    expect("=");
+    if (peek() == "-") constant.value = take();
+    constant.value += take();
+    expect(";");
+    constants[std::string(scope)].push_back(std::move(constant));
+  }
+
+  /// A size or bound: at most eight digits, not 0.
+  std::size_t count(const char* what) {
+    const std::string size = take();
+    const bool number =
+        !size.empty() && size.size() < 9 &&
+        std::ranges::all_of(size, [](unsigned char c) { return std::isdigit(c) != 0; });
+    if (!number || size == "0") fail("'" + size + "' is not the " + what);
+    return fault_ ? 0 : std::stoul(size);
   }
 
   void annotation() {
@@ -120,7 +171,7 @@ class Parser {
       member.type = type();
       if (peek() == ",") {
         take();
-        take();
+        member.bound = count("bound of a sequence");
       }
       expect(">");
     } else {
@@ -129,12 +180,7 @@ class Parser {
     member.name = take();
     if (peek() == "[") {
       take();
-      const std::string size = take();
-      const bool number =
-          !size.empty() && size.size() < 9 &&
-          std::ranges::all_of(size, [](unsigned char c) { return std::isdigit(c) != 0; });
-      if (!number || size == "0") fail("'" + size + "' is not an array's size");
-      if (!fault_) member.array_size = std::stoul(size);
+      member.array_size = count("size of an array");
       expect("]");
     }
     expect(";");
@@ -150,29 +196,49 @@ class Parser {
       name += "::" + take();
     }
     const bool known = std::ranges::find(kPrimitives, name) != kPrimitives.end();
-    if (!known && !structs_.contains(name)) fail("type '" + name + "' is not known");
+    if (!known && !structs.contains(name)) fail("type '" + name + "' is unknown");
     return name;
   }
 
   std::vector<Token> tokens_;
   std::size_t at_ = 0;
-  Structs structs_;
   std::optional<Error> fault_;
 };
 
 }  // namespace
 
 Result<IdlSchema> IdlSchema::parse(std::string_view idl) {
-  auto structs = Parser(idl).parse();
-  if (!structs.ok()) return structs.error();
+  Parser parser(idl);
+  if (const Status parsed = parser.parse(); !parsed.ok()) return parsed.error();
   IdlSchema schema;
-  schema.structs_ = std::move(structs).value();
+  schema.structs_ = std::move(parser.structs);
+  schema.constants_ = std::move(parser.constants);
   return schema;
 }
 
 const std::vector<IdlMember>* IdlSchema::find(const std::string& struct_name) const {
   const auto it = structs_.find(struct_name);
   return it == structs_.end() ? nullptr : &it->second;
+}
+
+std::span<const IdlConstant> IdlSchema::constants_of(const std::string& struct_name) const {
+  const auto it = constants_.find(struct_name);
+  return it == constants_.end() ? std::span<const IdlConstant>() : std::span(it->second);
+}
+
+bool IdlSchema::is_enumeration(const std::string& struct_name) const {
+  const auto* members = find(struct_name);
+  if (members == nullptr || members->size() != 1 || constants_of(struct_name).empty()) return false;
+  const IdlMember& member = members->front();
+  return member.name == "value" && !member.sequence && member.array_size == 0 &&
+         find(member.type) == nullptr;
+}
+
+std::vector<std::string> IdlSchema::struct_names() const {
+  std::vector<std::string> names;
+  names.reserve(structs_.size());
+  for (const auto& [name, members] : structs_) names.push_back(name);
+  return names;
 }
 
 }  // namespace furrow::msgs

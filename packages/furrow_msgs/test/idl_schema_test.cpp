@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "furrow_core/random.hpp"
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/message_types.hpp"
 #include "furrow_msgs/sensor_msgs.h"
@@ -26,13 +27,12 @@ std::vector<std::byte> serialized(const Message& message) {
   return bytes;
 }
 
-TEST(IdlSchema, UnderstandsEveryTypeOfFurrow) {
+TEST(IdlSchema, ParsesEveryMessageType) {
   for (const MessageType* type : all_message_types()) {
     const auto schema = IdlSchema::parse(type->idl);
     ASSERT_TRUE(schema.ok()) << type->ros_name << ": " << schema.error().message;
     const std::string name = cpp_name(type->ros_name);
     ASSERT_NE(schema->find(name), nullptr) << name;
-    // An empty message of each type walks through all its members.
     const auto message = type->create();
     std::vector<std::byte> bytes(type->serialized_size(message.get()));
     bytes.resize(*type->serialize(message.get(), bytes));
@@ -81,7 +81,32 @@ TEST(IdlSchema, PrintsNestedMessages) {
             "decisions: []\n");
 }
 
-TEST(IdlSchema, LongSequencesAreCounted) {
+TEST(IdlSchema, ConstantsBelongToTheirStruct) {
+  const auto schema = IdlSchema::parse(
+      "module a { module B_Constants { const uint8 X = 3; const long Y = -1; };\n"
+      "struct B { uint8 value; }; struct C { a::B b; uint8 value; }; };");
+  ASSERT_TRUE(schema.ok()) << schema.error().message;
+  ASSERT_EQ(schema->constants_of("a::B").size(), 2u);
+  EXPECT_EQ(schema->constants_of("a::B")[0].name, "X");
+  EXPECT_EQ(schema->constants_of("a::B")[1].value, "-1");
+  EXPECT_TRUE(schema->is_enumeration("a::B"));
+  EXPECT_FALSE(schema->is_enumeration("a::C"));
+  EXPECT_TRUE(schema->constants_of("a::C").empty());
+}
+
+TEST(IdlSchema, PrintsEnumerationsWithTheirNames) {
+  furrow_msgs::msg::AxisEvent event;
+  event.event(to_msg(AxisEventKind::kSafeState));
+  event.cause().value(200);
+  const auto schema = IdlSchema::parse(message_type<furrow_msgs::msg::AxisEvent>().idl);
+  ASSERT_TRUE(schema.ok());
+  const auto text = print_cdr(*schema, "furrow_msgs::msg::AxisEvent", serialized(event));
+  ASSERT_TRUE(text.ok());
+  EXPECT_NE(text->find("event: 7 (SAFE_STATE)\n"), std::string::npos) << *text;
+  EXPECT_NE(text->find("cause: 200 (unknown)\n"), std::string::npos) << *text;
+}
+
+TEST(IdlSchema, LongSequenceIsTruncatedWithItsLength) {
   sensor_msgs::msg::Image image;
   image.data(std::vector<std::uint8_t>(1000, 9));
   const auto schema = IdlSchema::parse(message_type<sensor_msgs::msg::Image>().idl);
@@ -92,20 +117,23 @@ TEST(IdlSchema, LongSequencesAreCounted) {
   EXPECT_NE(text->find("data: [9, 9, ... 1000 in all]"), std::string::npos) << *text;
 }
 
-TEST(IdlSchema, FaultsNameTheLine) {
+TEST(IdlSchema, FaultNamesTheLine) {
   const auto error = [](std::string_view idl) {
     const auto schema = IdlSchema::parse(idl);
     return schema.ok() ? std::string() : schema.error().message;
   };
-  EXPECT_EQ(error("module a {\n struct B { c::D d; };\n};"),
-            "IDL line 2: type 'c::D' is not known");
+  EXPECT_EQ(error("module a {\n struct B { c::D d; };\n};"), "IDL line 2: type 'c::D' is unknown");
   EXPECT_EQ(error("module a { struct B { long x[0]; }; };"),
-            "IDL line 1: '0' is not an array's size");
-  EXPECT_EQ(error("union X {};"), "IDL line 1: 'union' is not understood");
-  EXPECT_EQ(error("module a { struct B {"), "IDL line 1: the text ends too early");
+            "IDL line 1: '0' is not the size of an array");
+  EXPECT_EQ(error("module a {\n const uint8 B = 1;\n};"),
+            "IDL line 2: a constant must be in a module NAME_Constants");
+  EXPECT_EQ(error("module B_Constants { const string C = \"x\"; };"),
+            "IDL line 1: a constant of type 'string' is not supported");
+  EXPECT_EQ(error("union X {};"), "IDL line 1: 'union' is not supported");
+  EXPECT_EQ(error("module a { struct B {"), "IDL line 1: unexpected end of the text");
 }
 
-TEST(IdlSchema, DamagedMessagesAndTextsNeverCrash) {
+TEST(IdlSchema, DamagedMessageOrTextNeverCrashes) {
   furrow_msgs::msg::Tracks tracks;
   tracks.tracks().resize(3);
   const auto bytes = serialized(tracks);

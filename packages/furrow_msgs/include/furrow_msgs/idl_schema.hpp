@@ -12,18 +12,24 @@
 
 namespace furrow::msgs {
 
-/// A member of a struct. Exactly one of a primitive, a string or a struct, and that once, a fixed
-/// number of times, or as a sequence.
+/// A member of a struct: a primitive, a string or a struct. It is single, an array or a sequence.
 struct IdlMember {
   std::string name;
   std::string type;  ///< "double", "string", or the scoped name of a struct
   bool sequence = false;
+  std::size_t bound = 0;       ///< of a sequence; 0: unbounded
   std::size_t array_size = 0;  ///< 0: no array
 };
 
-/// The structs of an IDL text, by their scoped names ("sensor_msgs::msg::Image"). Understood is
-/// what ROS 2's message types need: modules, structs, primitives, string, sequence and
-/// one-dimensional arrays; annotations and comments are passed over.
+struct IdlConstant {
+  std::string type;  ///< a primitive
+  std::string name;
+  std::string value;  ///< as the text has it; string constants are not supported
+};
+
+/// The structs of an IDL text, by their scoped names ("sensor_msgs::msg::Image"), and the constants
+/// that belong to them. It supports what ROS 2's message types need: modules, structs, constants,
+/// primitives, string, sequence and one-dimensional arrays. Annotations and comments are skipped.
 class IdlSchema {
  public:
   /// kParse with the line for anything else, and for a type that is not defined before its use.
@@ -31,9 +37,15 @@ class IdlSchema {
 
   /// Null when there is no such struct.
   [[nodiscard]] const std::vector<IdlMember>* find(const std::string& struct_name) const;
+  /// The constants of module "NAME_Constants" beside struct NAME, as rosidl attaches them.
+  [[nodiscard]] std::span<const IdlConstant> constants_of(const std::string& struct_name) const;
+  /// Whether a struct is an enumeration: constants, and the one member `value` of a primitive.
+  [[nodiscard]] bool is_enumeration(const std::string& struct_name) const;
+  [[nodiscard]] std::vector<std::string> struct_names() const;
 
  private:
   std::map<std::string, std::vector<IdlMember>> structs_;
+  std::map<std::string, std::vector<IdlConstant>> constants_;  ///< by the name of their struct
 };
 
 struct PrintLimits {
@@ -41,8 +53,9 @@ struct PrintLimits {
   std::size_t max_text = 200;     ///< of a string
 };
 
-/// A message as indented text, "name: value" a line. kNotFound: the schema has no such struct.
-/// kParse: the CDR form (XCDR1, with its encapsulation header) is cut short or does not fit.
+/// A message as indented text, "name: value" a line; enumerations as "name: value (CONSTANT)".
+/// kNotFound: the schema has no such struct. kParse: the CDR form (XCDR1, with its encapsulation
+/// header) is truncated or of another type.
 [[nodiscard]] Result<std::string> print_cdr(const IdlSchema& schema, const std::string& struct_name,
                                             std::span<const std::byte> cdr,
                                             const PrintLimits& limits = {});

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "furrow_components/conversions.hpp"
+#include "furrow_msgs/enums.hpp"
+#include "furrow_msgs/furrow_msgs.h"
+#include "furrow_planning/types.hpp"
+#include "lateral_axis.hpp"
+
+namespace furrow::components {
+
+/// The wire's word for a decision of the planner.
+[[nodiscard]] msgs::DecisionKind decision_kind(planning::Decision decision);
+
+/// Translates plans into messages, and numbers their revisions and stops.
+class PlanConversion {
+ public:
+  explicit PlanConversion(std::vector<LateralAxis> axes) : axes_(std::move(axes)) {}
+
+  /// The routes and the decisions about their targets, as of a pose of the base. The message gets
+  /// the stamp of the tracks.
+  [[nodiscard]] furrow_msgs::msg::Plan to_msg(const planning::Plan& plan, const BaseOdometry& base,
+                                              const builtin_interfaces::msg::Time& stamp);
+  /// `axis` is an index of the tool, -1: none.
+  [[nodiscard]] furrow_msgs::msg::Decision to_msg(Time stamp, planning::TargetId id,
+                                                  msgs::DecisionKind decision,
+                                                  std::int32_t axis = -1) const;
+
+ private:
+  [[nodiscard]] furrow_msgs::msg::Stop to_msg(const planning::Plan& plan,
+                                              const planning::Stop& stop, const LateralAxis& axis,
+                                              const BaseOdometry& base);
+
+  std::vector<LateralAxis> axes_;
+  std::uint64_t revision_ = 0;
+  std::int64_t stop_id_ = 0;
+};
+
+}  // namespace furrow::components
