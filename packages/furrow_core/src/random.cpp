@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "furrow_core/hash.hpp"
+
 namespace furrow {
 namespace {
 
@@ -13,16 +15,6 @@ std::uint64_t splitmix64(std::uint64_t& state) {
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
   return z ^ (z >> 31);
-}
-
-// FNV-1a: std::hash is not the same on every standard library.
-std::uint64_t hash(std::string_view text) {
-  std::uint64_t value = 0xCBF29CE484222325ull;
-  for (const char c : text) {
-    value ^= static_cast<unsigned char>(c);
-    value *= 0x100000001B3ull;
-  }
-  return value;
 }
 
 std::uint64_t mix(std::uint64_t seed, std::uint64_t salt) {
@@ -36,10 +28,10 @@ Random::Random(std::uint64_t seed) {
   for (auto& word : state_) word = splitmix64(seed);
 }
 
-Random::Random(std::uint64_t seed, std::string_view stream) : Random(mix(seed, hash(stream))) {}
+Random::Random(std::uint64_t seed, std::string_view stream) : Random(mix(seed, fnv1a_64(stream))) {}
 
 Random::Random(std::uint64_t seed, std::string_view stream, std::uint64_t index)
-    : Random(mix(mix(seed, hash(stream)), index + 1)) {}
+    : Random(mix(mix(seed, fnv1a_64(stream)), index + 1)) {}
 
 std::uint64_t Random::next() {
   const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;

@@ -139,4 +139,19 @@ template <class Parameters>
   return lister.declared();
 }
 
+/// Throws ConfigError when a value of the struct is outside its declared range or choices. For code
+/// that takes a parameter struct from a caller instead of from ParameterLoader. `where` is named in
+/// the error.
+template <class Parameters>
+void validate_parameters(Parameters parameters, const SourceLocation& where = {}) {
+  ParameterLister lister;
+  parameters.visit(lister);
+  std::vector<GivenParameter> given;
+  given.reserve(lister.declared().size());
+  for (const DeclaredParameter& declared : lister.declared()) {
+    given.push_back({declared.info.name, declared.default_value, where});
+  }
+  check_parameters(lister.declared(), given);
+}
+
 }  // namespace furrow
