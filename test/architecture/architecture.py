@@ -77,6 +77,7 @@ CMAKE_NAMES = {
     "libfastrtps-dev": "fastrtps",
     "liblemon-dev": "LEMON",
     "liblz4-dev": "liblz4",
+    "libgeographiclib-dev": "geographiclib",
     "libgpiod-dev": "libgpiod",
     "libmodbus-dev": "libmodbus",
     "libopencv-dev": "OpenCV",

@@ -22,14 +22,8 @@ Eigen::Vector2d rotate(double heading_rad, const Eigen::Vector2d& v) {
 }  // namespace
 
 BaseState extrapolate(const BaseState& base, Time time) {
-  const double dt = (time - base.stamp).to_seconds();
-  const double turn = base.twist_B.yaw_rate_radps * dt;
-  // The displacement along an arc, by series where the turn is small.
-  const double sinc = std::abs(turn) < 1e-6 ? 1.0 - turn * turn / 6.0 : std::sin(turn) / turn;
-  const double cosc = std::abs(turn) < 1e-6 ? turn / 2.0 : (1.0 - std::cos(turn)) / turn;
-  const geometry::Pose2 moved{dt * (sinc * base.twist_B.vx_mps - cosc * base.twist_B.vy_mps),
-                              dt * (cosc * base.twist_B.vx_mps + sinc * base.twist_B.vy_mps), turn};
-  return {time, geometry::compose(base.X_FB, moved), base.twist_B};
+  const double dt_s = (time - base.stamp).to_seconds();
+  return {time, geometry::extrapolate(base.X_FB, base.twist_B, dt_s), base.twist_B};
 }
 
 double fall_time_s(double height_m, double exit_speed_mps) {

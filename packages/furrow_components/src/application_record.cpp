@@ -6,7 +6,7 @@
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_core/file.hpp"
-#include "furrow_field/field_geojson.hpp"
+#include "furrow_geometry/geodetic.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_ledger/markup.hpp"
 #include "furrow_msgs/enums.hpp"
@@ -143,12 +143,17 @@ std::vector<ReportTable> use_tables(const RunRecord& record,
 Status write_as_applied(const std::filesystem::path& folder, const RunRecord& record,
                         const std::vector<Application>& applications) {
   if (!record.georeferenced()) return {};
-  const field::GeoOrigin origin{record.origin_latitude_deg(), record.origin_longitude_deg(),
-                                record.row_angle_rad()};
+  const auto earth = geometry::FieldGeoreference::at(
+      {record.origin_latitude_deg(), record.origin_longitude_deg(), record.origin_altitude_m()},
+      record.row_angle_rad());
+  if (!earth) {
+    return Error{earth.error().code,
+                 "as_applied.geojson: the field's origin: " + earth.error().message};
+  }
   return write_file_atomically(
       folder / "as_applied.geojson",
       actuation::as_applied_geojson(
-          applications, [&](const Eigen::Vector2d& p_F) { return field::to_wgs84(origin, p_F); }));
+          applications, [&](const Eigen::Vector2d& p_F) { return earth->to_lon_lat_deg(p_F); }));
 }
 
 }  // namespace furrow::components

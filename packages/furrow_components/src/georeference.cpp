@@ -23,10 +23,9 @@ constexpr std::uint8_t kGroundAugmented = 2;
 constexpr std::uint8_t kCovarianceUnknown = 0;
 constexpr std::uint8_t kCovarianceKnown = 3;
 
-localization::FieldGeoreference make(const GeoreferenceParameters& p) {
-  auto made = localization::FieldGeoreference::at(
-      {p.origin_latitude_deg * kRadPerDeg, p.origin_longitude_deg * kRadPerDeg,
-       p.origin_altitude_m},
+geometry::FieldGeoreference make(const GeoreferenceParameters& p) {
+  auto made = geometry::FieldGeoreference::at(
+      {p.origin_latitude_deg, p.origin_longitude_deg, p.origin_altitude_m},
       p.row_angle_deg * kRadPerDeg);
   if (!made.ok()) throw ConfigError("georeference: " + made.error().message);
   return std::move(made).value();
@@ -66,8 +65,8 @@ void GeoreferenceParameters::visit(ParameterVisitor& v) {
   v.visit({.name = "origin_latitude_deg",
            .unit = "deg",
            .description = "of the field frame's origin, WGS 84",
-           .min = -89.9,
-           .max = 89.9},
+           .min = -90.0,
+           .max = 90.0},
           origin_latitude_deg);
   v.visit({.name = "origin_longitude_deg",
            .unit = "deg",
@@ -96,9 +95,7 @@ Georeference::Georeference(const GeoreferenceParameters& parameters)
 GnssPosition Georeference::from_msg(const sensor_msgs::msg::NavSatFix& fix) const {
   GnssPosition position{.stamp = graph::from_msg(fix.header().stamp())};
   position.p_FA_m =
-      georeference_
-          .to_field({fix.latitude() * kRadPerDeg, fix.longitude() * kRadPerDeg, fix.altitude()})
-          .head<2>();
+      georeference_.to_field({fix.latitude(), fix.longitude(), fix.altitude()}).head<2>();
   double sigma_m = 0.0;
   if (fix.position_covariance_type() != kCovarianceUnknown) {
     const auto& c = fix.position_covariance();
@@ -116,8 +113,8 @@ sensor_msgs::msg::NavSatFix Georeference::to_msg(const GnssPosition& position) c
   fix.header(header(position.stamp, "gnss_antenna"));
   fix.status().status(status_of(position.quality));
   const auto geodetic = georeference_.to_geodetic({position.p_FA_m.x(), position.p_FA_m.y(), 0.0});
-  fix.latitude(geodetic.latitude_rad / kRadPerDeg);
-  fix.longitude(geodetic.longitude_rad / kRadPerDeg);
+  fix.latitude(geodetic.latitude_deg);
+  fix.longitude(geodetic.longitude_deg);
   fix.altitude(geodetic.height_m);
   fix.position_covariance_type(kCovarianceUnknown);
   if (!position.covariance || position.covariance->isZero(0.0)) return fix;

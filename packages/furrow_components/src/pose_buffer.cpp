@@ -37,14 +37,10 @@ Result<BaseOdometry> PoseBuffer::at(Time stamp, Duration ahead) const {
   const BaseOdometry& newest = poses_.back();
   if (stamp > newest.stamp) {
     if (stamp > newest.stamp + ahead) return Error{ErrorCode::kStale, "odometry is too old"};
-    const double dt_s = (stamp - newest.stamp).to_seconds();
-    const double turn_rad = newest.yaw_rate_radps * dt_s;
     BaseOdometry moved = newest;
     moved.stamp = stamp;
-    // Half the turn gives the direction of the chord.
-    moved.X_FB = geometry::compose(newest.X_FB,
-                                   {newest.speed_mps * dt_s * std::cos(0.5 * turn_rad),
-                                    newest.speed_mps * dt_s * std::sin(0.5 * turn_rad), turn_rad});
+    moved.X_FB = geometry::extrapolate(newest.X_FB, {newest.speed_mps, 0.0, newest.yaw_rate_radps},
+                                       (stamp - newest.stamp).to_seconds());
     return moved;
   }
   const auto after = std::ranges::lower_bound(poses_, stamp, {}, &BaseOdometry::stamp);

@@ -254,11 +254,8 @@ class RobotSimulator final : public graph::Component {
 
   // The pose that wheels alone would tell, in a frame that starts as the field frame.
   void reckon(const simulation::WheelReading& reading, Time now) {
-    const double dt_s = (now - last_).to_seconds();
-    const double turn_rad = reading.yaw_rate_radps * dt_s;
-    const double way_m = reading.speed_mps * dt_s;
-    reckoned_ = geometry::compose(
-        reckoned_, {way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad});
+    reckoned_ = geometry::extrapolate(reckoned_, {reading.speed_mps, 0.0, reading.yaw_rate_radps},
+                                      (now - last_).to_seconds());
     last_ = now;
   }
 

@@ -139,6 +139,7 @@ class Scorer final : public graph::Component {
     record_.georeferenced(true);
     record_.origin_latitude_deg(parameters_.georeference.origin_latitude_deg);
     record_.origin_longitude_deg(parameters_.georeference.origin_longitude_deg);
+    record_.origin_altitude_m(parameters_.georeference.origin_altitude_m);
     record_.row_angle_rad(parameters_.georeference.row_angle_deg * std::numbers::pi / 180.0);
     out_.publish(record_);
   }

@@ -111,6 +111,15 @@ TEST(ApplicationRecord, WritesTheMapOnlyWithAnOrigin) {
   const double east_deg = 180.0 / (std::numbers::pi * n_m * std::cos(latitude));
   const std::string expected = std::to_string(std::lround((7.0 + east_deg) * 1e9));
   EXPECT_NE(text->find("7." + expected.substr(1)), std::string::npos) << *text;
+
+  // 6378 m above the ellipsoid a metre is about a thousandth less of a degree.
+  run.origin_altitude_m(6378.137);
+  EXPECT_TRUE(write_as_applied(folder, run, applications_of(run, tool())).ok());
+  const auto above = read_file(folder / "as_applied.geojson");
+  ASSERT_TRUE(above.ok());
+  const double less_deg = east_deg * n_m / (n_m + 6378.137);
+  const std::string shorter = std::to_string(std::lround((7.0 + less_deg) * 1e9));
+  EXPECT_NE(above->find("7." + shorter.substr(1)), std::string::npos) << *above;
 }
 
 }  // namespace

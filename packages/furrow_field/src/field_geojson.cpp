@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <utility>
+
+#include "furrow_geometry/geodetic.hpp"
 
 namespace furrow::field {
 namespace {
@@ -13,25 +14,9 @@ namespace {
 using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-/// Metres for a degree of longitude (x) and latitude (y) at a latitude, from the radii of curvature
-/// of the WGS84 ellipsoid (a = 6378137 m, f = 1 / 298.257223563).
-Eigen::Vector2d metres_per_degree(double latitude_deg) {
-  constexpr double kSemiMajor_m = 6'378'137.0;
-  constexpr double kFlattening = 1.0 / 298.257223563;
-  constexpr double kEccentricity2 = kFlattening * (2.0 - kFlattening);
-  const double sine = std::sin(latitude_deg * kRadPerDeg);
-  const double w2 = 1.0 - kEccentricity2 * sine * sine;
-  const double prime_vertical_m = kSemiMajor_m / std::sqrt(w2);
-  const double meridian_m = prime_vertical_m * (1.0 - kEccentricity2) / w2;
-  return {prime_vertical_m * std::cos(latitude_deg * kRadPerDeg) * kRadPerDeg,
-          meridian_m * kRadPerDeg};
-}
-
-bool is_on_earth(const GeoOrigin& origin) {
-  return std::abs(origin.latitude_deg) < 89.0 && std::abs(origin.longitude_deg) <= 180.0 &&
-         std::isfinite(origin.heading_rad);
+Result<geometry::FieldGeoreference> georeference(const GeoOrigin& origin) {
+  return geometry::FieldGeoreference::at(
+      {origin.latitude_deg, origin.longitude_deg, origin.altitude_m}, origin.heading_rad);
 }
 
 class GeoJsonReader {
@@ -49,9 +34,13 @@ class GeoJsonReader {
       geographic_ = true;
     }
     if (geographic_ && !origin_) {
-      return fail("furrow", "the coordinates are WGS84: an origin must be given");
+      return fail("furrow", "the coordinates are WGS 84: an origin must be given");
     }
-    if (geographic_ && !is_on_earth(*origin_)) return fail("origin", "is not on the earth");
+    if (geographic_) {
+      auto made = georeference(*origin_);
+      if (!made) return fail("origin", "is not on the earth: " + made.error().message);
+      georeference_ = *made;
+    }
     if (!root.contains("features") || !root["features"].is_array()) {
       return fail("features", "is not a list");
     }
@@ -142,6 +131,7 @@ class GeoJsonReader {
     if (Status s = number(*origin, "latitude_deg", value.latitude_deg); !s.ok()) return s;
     if (Status s = number(*origin, "longitude_deg", value.longitude_deg); !s.ok()) return s;
     if (Status s = number(*origin, "heading_rad", value.heading_rad); !s.ok()) return s;
+    if (Status s = number(*origin, "altitude_m", value.altitude_m); !s.ok()) return s;
     origin_ = value;
     return {};
   }
@@ -165,7 +155,10 @@ class GeoJsonReader {
     }
     Plant plant;
     plant.id = static_cast<std::int64_t>(index);
-    plant.p_F_m = geographic_ ? from_wgs84(*origin_, point) : point;
+    plant.p_F_m = geographic_ ? georeference_->from_lon_lat_deg(point) : point;
+    if (!plant.p_F_m.allFinite()) {
+      return fail("coordinates", "are not longitude and latitude of a place near the origin");
+    }
     std::string kind;
     if (Status s = text(*properties, "kind", kind); !s.ok()) return s;
     if (!plant_kind_from(kind)) return fail("kind", "must be 'crop' or 'weed'");
@@ -185,14 +178,16 @@ class GeoJsonReader {
     if (field_.source.empty()) field_.source = "imported: " + file_;
     double length_m = 0.0;
     double half_width_m = 0.0;
-    for (Plant& plant : field_.plants) {
-      if (geographic_ && has_extent_) pull_inside(plant.p_F_m);
+    for (const Plant& plant : field_.plants) {
       length_m = std::max(length_m, plant.p_F_m.x());
       half_width_m = std::max(half_width_m, std::abs(plant.p_F_m.y()));
     }
     if (!has_extent_) {
       field_.length_m = length_m;
       field_.width_m = 2.0 * half_width_m;
+    }
+    if (geographic_) {
+      for (Plant& plant : field_.plants) pull_inside(plant.p_F_m);
     }
     sort_plants(field_);
   }
@@ -210,6 +205,7 @@ class GeoJsonReader {
 
   std::string file_;
   std::optional<GeoOrigin> origin_;
+  std::optional<geometry::FieldGeoreference> georeference_;  ///< where the coordinates are WGS 84
   std::string where_;
   FieldModel field_;
   bool geographic_ = false;
@@ -227,6 +223,7 @@ OrderedJson header_of(const FieldModel& field, const std::optional<GeoOrigin>& o
   if (origin) {
     header["origin"] = {{"latitude_deg", origin->latitude_deg},
                         {"longitude_deg", origin->longitude_deg},
+                        {"altitude_m", origin->altitude_m},
                         {"heading_rad", origin->heading_rad}};
   }
   return header;
@@ -234,33 +231,17 @@ OrderedJson header_of(const FieldModel& field, const std::optional<GeoOrigin>& o
 
 }  // namespace
 
-Eigen::Vector2d to_wgs84(const GeoOrigin& origin, const Eigen::Vector2d& p_F_m) {
-  const Eigen::Vector2d scale = metres_per_degree(origin.latitude_deg);
-  const double c = std::cos(origin.heading_rad);
-  const double s = std::sin(origin.heading_rad);
-  const double east_m = c * p_F_m.x() - s * p_F_m.y();
-  const double north_m = s * p_F_m.x() + c * p_F_m.y();
-  return {origin.longitude_deg + east_m / scale.x(), origin.latitude_deg + north_m / scale.y()};
-}
-
-Eigen::Vector2d from_wgs84(const GeoOrigin& origin, const Eigen::Vector2d& lon_lat_deg) {
-  const Eigen::Vector2d scale = metres_per_degree(origin.latitude_deg);
-  const double east_m = (lon_lat_deg.x() - origin.longitude_deg) * scale.x();
-  const double north_m = (lon_lat_deg.y() - origin.latitude_deg) * scale.y();
-  const double c = std::cos(origin.heading_rad);
-  const double s = std::sin(origin.heading_rad);
-  return {c * east_m + s * north_m, -s * east_m + c * north_m};
-}
-
 Result<std::string> to_geojson(const FieldModel& field, const std::optional<GeoOrigin>& origin) {
   if (Status status = validate(field); !status.ok()) return status.error();
-  if (origin && !is_on_earth(*origin)) {
-    return Error{ErrorCode::kOutOfRange,
-                 "the origin is not on the earth, or within 1 degree of a pole"};
+  std::optional<geometry::FieldGeoreference> earth;
+  if (origin) {
+    auto made = georeference(*origin);
+    if (!made) return Error{ErrorCode::kOutOfRange, "the origin: " + made.error().message};
+    earth = *made;
   }
   OrderedJson features = OrderedJson::array();
   for (const Plant& plant : field.plants) {
-    const Eigen::Vector2d point = origin ? to_wgs84(*origin, plant.p_F_m) : plant.p_F_m;
+    const Eigen::Vector2d point = earth ? earth->to_lon_lat_deg(plant.p_F_m) : plant.p_F_m;
     OrderedJson feature;
     feature["type"] = "Feature";
     feature["geometry"] = {{"type", "Point"}, {"coordinates", {point.x(), point.y()}}};

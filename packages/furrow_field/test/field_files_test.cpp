@@ -135,48 +135,40 @@ TEST(FieldGeoJson, ReadsBackWhatItWroteInDegrees) {
   }
 }
 
-TEST(FieldGeoJson, DegreesAgreeWithTheEllipsoid) {
-  // At the equator a metre east is 1 / a radians; a metre north is 1 / (a (1 - e2)) radians.
-  const double a_m = 6378137.0;
-  const double e2 = 0.00669437999014;
-  const double deg = 180.0 / 3.14159265358979323846;
-  const GeoOrigin equator{0.0, 10.0, 0.0};
-  EXPECT_NEAR(to_wgs84(equator, {100.0, 0.0}).x() - 10.0, 100.0 / a_m * deg, 1e-12);
-  EXPECT_NEAR(to_wgs84(equator, {0.0, 100.0}).y(), 100.0 / (a_m * (1.0 - e2)) * deg, 1e-12);
-  // Heading pi/2: the field's x points north.
-  const Eigen::Vector2d north = to_wgs84({50.0, 7.0, 1.5707963267948966}, {100.0, 0.0});
-  EXPECT_NEAR(north.x(), 7.0, 1e-12);
-  EXPECT_GT(north.y(), 50.0);
-}
-
-/// Earth-centred coordinates of a point on the WGS84 ellipsoid, from its definition.
-Eigen::Vector3d on_ellipsoid_m(double longitude_rad, double latitude_rad) {
-  const double a_m = 6378137.0;
-  const double b_m = a_m * (1.0 - 1.0 / 298.257223563);
-  // The point whose normal has this latitude: (a2 cos, b2 sin) over the normal's scale.
-  const double c = a_m * a_m * std::cos(latitude_rad);
-  const double s = b_m * b_m * std::sin(latitude_rad);
-  const double scale = std::hypot(a_m * std::cos(latitude_rad), b_m * std::sin(latitude_rad));
-  return {c * std::cos(longitude_rad) / scale, c * std::sin(longitude_rad) / scale, s / scale};
-}
-
-TEST(FieldGeoJson, IsWithinItsPromiseOfTheTrueTangentPlane) {
-  const double rad = 3.14159265358979323846 / 180.0;
-  Random random(9);
-  for (int i = 0; i < 500; ++i) {
-    const GeoOrigin origin{random.uniform(-55.0, 55.0), random.uniform(-180.0, 180.0), 0.0};
-    const double angle = random.uniform(0.0, 360.0 * rad);
-    const Eigen::Vector2d p_m = 300.0 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    const Eigen::Vector2d lon_lat_deg = to_wgs84(origin, p_m);
-    const double lon = origin.longitude_deg * rad;
-    const double lat = origin.latitude_deg * rad;
-    const Eigen::Vector3d d_m =
-        on_ellipsoid_m(lon_lat_deg.x() * rad, lon_lat_deg.y() * rad) - on_ellipsoid_m(lon, lat);
-    const Eigen::Vector3d east(-std::sin(lon), std::cos(lon), 0.0);
-    const Eigen::Vector3d north(-std::sin(lat) * std::cos(lon), -std::sin(lat) * std::sin(lon),
-                                std::cos(lat));
-    EXPECT_LT((Eigen::Vector2d(east.dot(d_m), north.dot(d_m)) - p_m).norm(), 0.012);
+TEST(FieldGeoJson, LiesAcrossTheDateLineOnThePolesAndInTheSouth) {
+  for (const GeoOrigin& origin :
+       {GeoOrigin{-16.8, 179.99999, 0.4}, GeoOrigin{16.8, -179.99999, 3.0},
+        GeoOrigin{-90.0, 0.0, 1.0}, GeoOrigin{90.0, 12.0, -1.0},
+        GeoOrigin{-43.5, 172.6, 2.0, 400.0}}) {
+    const FieldModel field = random_field(11, 40);
+    const Result<FieldModel> back = read_geojson(*to_geojson(field, origin));
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    expect_equal(*back, field, 1e-7);
   }
+}
+
+TEST(FieldGeoJson, ReadsPointsOfOthersAcrossTheDateLine) {
+  const std::string text = R"({"type":"FeatureCollection","features":[
+    {"type":"Feature","geometry":{"type":"Point","coordinates":[179.9999,-16.8]},
+     "properties":{"kind":"crop"}},
+    {"type":"Feature","geometry":{"type":"Point","coordinates":[-179.9999,-16.8]},
+     "properties":{"kind":"weed"}}]})";
+  const Result<FieldModel> field = from_geojson(text, "f", GeoOrigin{-16.8, 179.9999, 0.0});
+  ASSERT_TRUE(field.ok()) << field.error().message;
+  ASSERT_EQ(field->plants.size(), 2u);
+  // 0.0002 degrees of the parallel: N cos(16.8 deg), N = a / sqrt(1 - e2 sin2(16.8 deg)).
+  const double rad = 3.14159265358979323846 / 180.0;
+  const double sine = std::sin(16.8 * rad);
+  const double n_m = 6378137.0 / std::sqrt(1.0 - 0.00669437999014 * sine * sine);
+  EXPECT_NEAR(field->length_m, 0.0002 * rad * n_m * std::cos(16.8 * rad), 1e-6);
+}
+
+TEST(FieldGeoJson, RefusesAPointFarFromTheOrigin) {
+  const std::string text = R"({"type":"FeatureCollection","features":[
+    {"type":"Feature","geometry":{"type":"Point","coordinates":[-170,0]},
+     "properties":{"kind":"weed"}}]})";
+  const Result<FieldModel> field = from_geojson(text, "f", GeoOrigin{0.0, 10.0, 0.0});
+  expect_error(field, {"feature 0: coordinates", "near the origin"});
 }
 
 TEST(FieldGeoJson, ReadsPointsOfOtherPrograms) {
@@ -240,7 +232,7 @@ TEST(FieldGeoJson, SurvivesDamage) {
 
 TEST(FieldFiles, RefuseToWriteAnInvalidField) {
   FieldModel field = random_field(5, 3);
-  EXPECT_FALSE(to_geojson(field, GeoOrigin{90.0, 0.0, 0.0}).ok());
+  EXPECT_FALSE(to_geojson(field, GeoOrigin{90.1, 0.0, 0.0}).ok());
   field.plants[0].species = "\xff";
   EXPECT_FALSE(to_geojson(field).ok());
   field.plants[0].p_F_m.x() = std::numeric_limits<double>::quiet_NaN();

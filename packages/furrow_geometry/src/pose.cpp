@@ -46,4 +46,13 @@ Pose2 interpolate(const Pose2& a, const Pose2& b, double fraction) {
           wrap_angle_rad(a.heading_rad + fraction * turn_rad)};
 }
 
+Pose2 extrapolate(const Pose2& X_AB, const Twist2& twist_B, double dt_s) {
+  const double turn = twist_B.yaw_rate_radps * dt_s;
+  // The displacement along an arc, by series where the turn is small.
+  const double sinc = std::abs(turn) < 1e-6 ? 1.0 - turn * turn / 6.0 : std::sin(turn) / turn;
+  const double cosc = std::abs(turn) < 1e-6 ? turn / 2.0 : (1.0 - std::cos(turn)) / turn;
+  return compose(X_AB, {dt_s * (sinc * twist_B.vx_mps - cosc * twist_B.vy_mps),
+                        dt_s * (cosc * twist_B.vx_mps + sinc * twist_B.vy_mps), turn});
+}
+
 }  // namespace furrow::geometry

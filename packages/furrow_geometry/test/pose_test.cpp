@@ -64,5 +64,39 @@ TEST(Pose2, InterpolatesTheShorterWayRound) {
   expect_same(interpolate(a, b, 1.5), {3, 6, -kPi + 0.2});
 }
 
+TEST(Extrapolate, FollowsACircle) {
+  // A quarter of a circle of radius 2 m to the left, in 1 s.
+  const double quarter = 0.5 * std::numbers::pi;
+  const Pose2 end = extrapolate({1.0, -1.0, 0.0}, {2.0 * quarter, 0.0, quarter}, 1.0);
+  EXPECT_NEAR(end.x_m, 3.0, 1e-12);
+  EXPECT_NEAR(end.y_m, 1.0, 1e-12);
+  EXPECT_NEAR(end.heading_rad, quarter, 1e-12);
+}
+
+TEST(Extrapolate, AgreesWithManySmallSteps) {
+  const Twist2 twist{0.6, -0.1, 0.7};
+  Pose2 stepped{0.2, 0.1, 2.9};
+  constexpr int kSteps = 200'000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double dt_s = 3.0 / kSteps;
+    stepped = compose(stepped, {twist.vx_mps * dt_s, twist.vy_mps * dt_s, 0.7 * dt_s});
+  }
+  const Pose2 end = extrapolate({0.2, 0.1, 2.9}, twist, 3.0);
+  EXPECT_NEAR(end.x_m, stepped.x_m, 1e-5);
+  EXPECT_NEAR(end.y_m, stepped.y_m, 1e-5);
+  EXPECT_NEAR(wrap_angle_rad(end.heading_rad - stepped.heading_rad), 0.0, 1e-9);
+}
+
+TEST(Extrapolate, BackAgainIsWhereItBegan) {
+  const Pose2 start{0.3, -0.2, 1.1};
+  for (const double yaw_rate : {0.0, 1e-9, 1e-6, 0.3}) {
+    const Twist2 twist{0.5, 0.05, yaw_rate};
+    const Pose2 back = extrapolate(extrapolate(start, twist, 0.7), twist, -0.7);
+    EXPECT_NEAR(back.x_m, start.x_m, 1e-9);
+    EXPECT_NEAR(back.y_m, start.y_m, 1e-9);
+    EXPECT_NEAR(back.heading_rad, start.heading_rad, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace furrow::geometry

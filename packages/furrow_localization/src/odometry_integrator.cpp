@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "check_parameters.hpp"
 #include "covariance.hpp"
 #include "ring_buffer.hpp"
 
@@ -17,27 +16,12 @@ struct Reckoning {
   WheelOdometry newest;  ///< the measurement at its stamp; zero motion before the first
 };
 
-/// Drives along a circular arc with constant speed and yaw rate.
-geometry::Pose2 drive(const geometry::Pose2& X_FB, double speed_mps, double yaw_rate_radps,
-                      double dt_s) {
-  const double turn_rad = yaw_rate_radps * dt_s;
-  const double half_rad = 0.5 * turn_rad;
-  // The chord of the arc: 2 R sin(turn / 2), without dividing by a small yaw rate.
-  const double shortening =
-      std::abs(half_rad) < 1e-4 ? 1.0 - half_rad * half_rad / 6.0 : std::sin(half_rad) / half_rad;
-  const double chord_m = speed_mps * dt_s * shortening;
-  const double direction_rad = X_FB.heading_rad + half_rad;
-  return {X_FB.x_m + chord_m * std::cos(direction_rad),
-          X_FB.y_m + chord_m * std::sin(direction_rad),
-          geometry::wrap_angle_rad(X_FB.heading_rad + turn_rad)};
-}
-
 PoseEstimate moved(const PoseEstimate& from, Time stamp, double speed_mps, double yaw_rate_radps,
                    double speed_variance, double yaw_rate_variance) {
   const double dt_s = (stamp - from.stamp).to_seconds();
   PoseEstimate to;
   to.stamp = stamp;
-  to.X_FB = drive(from.X_FB, speed_mps, yaw_rate_radps, dt_s);
+  to.X_FB = geometry::extrapolate(from.X_FB, {speed_mps, 0.0, yaw_rate_radps}, dt_s);
   to.speed_mps = speed_mps;
   to.yaw_rate_radps = yaw_rate_radps;
   to.twist_covariance = Eigen::Vector2d(speed_variance, yaw_rate_variance).asDiagonal();
@@ -59,7 +43,7 @@ PoseEstimate moved(const PoseEstimate& from, Time stamp, double speed_mps, doubl
 class OdometryIntegrator::Impl {
  public:
   explicit Impl(const OdometryIntegratorParameters& parameters)
-      : parameters_((check_ranges(parameters), parameters)),
+      : parameters_((validate_parameters(parameters), parameters)),
         history_(static_cast<std::size_t>(parameters.history_measurements)) {}
 
   Status reset(Time stamp, const geometry::Pose2& X_FB, const Eigen::Matrix3d& covariance);

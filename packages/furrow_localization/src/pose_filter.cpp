@@ -6,7 +6,6 @@
 #include <optional>
 #include <variant>
 
-#include "check_parameters.hpp"
 #include "covariance.hpp"
 #include "motion_model.hpp"
 #include "ring_buffer.hpp"
@@ -56,7 +55,7 @@ double age_s(Time now, const std::optional<Time>& newest) {
 class PoseFilter::Impl {
  public:
   explicit Impl(const PoseFilterParameters& parameters)
-      : parameters_((check_ranges(parameters), parameters)),
+      : parameters_((validate_parameters(parameters), parameters)),
         model_(parameters_),
         history_(static_cast<std::size_t>(parameters.history_measurements)) {}
 

@@ -12,11 +12,7 @@
 namespace furrow::actuation {
 
 /// Planar velocity of the base in the base frame B.
-struct Twist2 {
-  double vx_mps = 0.0;
-  double vy_mps = 0.0;
-  double yaw_rate_radps = 0.0;
-};
+using geometry::Twist2;
 
 /// Where the base is and how it moves, as the localization says it.
 struct BaseState {

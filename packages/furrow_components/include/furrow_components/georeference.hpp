@@ -1,7 +1,7 @@
 #pragma once
 
 #include "furrow_core/parameters.hpp"
-#include "furrow_localization/geodetic.hpp"
+#include "furrow_geometry/geodetic.hpp"
 #include "furrow_localization/measurement.hpp"
 #include "furrow_msgs/sensor_msgs.h"
 
@@ -33,7 +33,7 @@ class Georeference {
   static constexpr double kFixedSigma_m = 0.05;
 
  private:
-  localization::FieldGeoreference georeference_;
+  geometry::FieldGeoreference georeference_;
   Eigen::Matrix2d R_EF_;  ///< from the field frame to east and north
 };
 

@@ -15,6 +15,13 @@ struct Pose2 {
   double heading_rad = 0.0;
 };
 
+/// How a frame B moves over ground, as seen in B.
+struct Twist2 {
+  double vx_mps = 0.0;
+  double vy_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+};
+
 /// X_AC from X_AB and X_BC.
 [[nodiscard]] Pose2 compose(const Pose2& X_AB, const Pose2& X_BC);
 /// X_BA from X_AB.
@@ -28,5 +35,9 @@ struct Pose2 {
 /// Linear in position, the shorter way in heading. `fraction` 0 gives `a`, 1 gives `b`; values
 /// outside extrapolate.
 [[nodiscard]] Pose2 interpolate(const Pose2& a, const Pose2& b, double fraction);
+
+/// The pose after `dt_s` (also negative) of motion with a constant twist, along a circular arc: the
+/// exponential map of SE(2) (Lynch and Park 2017, section 3.3.3).
+[[nodiscard]] Pose2 extrapolate(const Pose2& X_AB, const Twist2& twist_B, double dt_s);
 
 }  // namespace furrow::geometry

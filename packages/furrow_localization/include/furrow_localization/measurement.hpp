@@ -28,7 +28,7 @@ struct ImuYawRate {
 enum class FixQuality : std::uint8_t { kNone, kSingle, kDifferential, kRtkFloat, kRtkFixed };
 [[nodiscard]] std::string_view to_string(FixQuality quality);
 
-/// Position of the GNSS antenna A in the field frame F (geodetic.hpp converts).
+/// Position of the GNSS antenna A in the field frame F (furrow_geometry/geodetic.hpp converts).
 struct GnssPosition {
   Time stamp = {};
   Eigen::Vector2d p_FA_m = Eigen::Vector2d::Zero();
