@@ -20,8 +20,8 @@ MAX_LINES = 700
 SOURCE_SUFFIXES = {".hpp", ".h", ".cpp", ".cc", ".cxx"}
 
 ALGORITHMS = {
-    "furrow_core", "furrow_geometry", "furrow_field", "furrow_vision", "furrow_localization",
-    "furrow_tracking", "furrow_planning", "furrow_actuation", "furrow_simulation", "furrow_ledger",
+    "furrow_core", "furrow_geometry", "furrow_annotation", "furrow_field", "furrow_vision",
+    "furrow_localization", "furrow_tracking", "furrow_planning", "furrow_actuation", "furrow_simulation", "furrow_ledger",
 }
 # What a package may depend on; a package that is not here has no place yet.
 BASE = {"furrow_cmake", "furrow_core"}
@@ -31,7 +31,8 @@ LAYERS = {
     "furrow_core": {"furrow_cmake"},
     "furrow_geometry": BASE,
     "furrow_field": GEOMETRIC,
-    "furrow_vision": GEOMETRIC,
+    "furrow_annotation": GEOMETRIC,
+    "furrow_vision": GEOMETRIC | {"furrow_annotation"},
     "furrow_localization": GEOMETRIC,
     "furrow_tracking": GEOMETRIC,
     "furrow_planning": GEOMETRIC,
@@ -55,14 +56,14 @@ RESTRICTED = [
     ("Fast DDS", re.compile(r"^(fastdds|fastrtps)/"), {"fastrtps", "fastdds"}, {"furrow_dds"}),
     ("Fast CDR", re.compile(r"^fastcdr/"), {"fastcdr"}, {"furrow_dds", "furrow_msgs"}),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"), {"yaml-cpp"},
-     {"furrow_graph", "furrow_recording", "furrow_vision"}),
+     {"furrow_annotation", "furrow_graph", "furrow_recording", "furrow_vision"}),
     ("CLI11", re.compile(r"^CLI/"), {"CLI11"}, {"furrow_cli"}),
 ]
 # Where a package's use is for one purpose only.
 RESTRICTED_FILES = {
     # The annotations of this data set are YAML.
-    ("furrow_vision", "yaml-cpp"): {"packages/furrow_vision/src/dataset_cwfid.cpp",
-                                    "packages/furrow_vision/src/model_file.cpp"},
+    ("furrow_annotation", "yaml-cpp"): {"packages/furrow_annotation/src/cwfid.cpp"},
+    ("furrow_vision", "yaml-cpp"): {"packages/furrow_vision/src/model_file.cpp"},
 }
 DDS_NAMES = re.compile(r"\beprosima::(fastdds|fastrtps)\b")
 

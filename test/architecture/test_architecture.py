@@ -112,7 +112,7 @@ class ArchitectureTest(unittest.TestCase):
         self.package("furrow_vision", ["furrow_cmake", "yaml-cpp"],
                      cmake="find_package(furrow_cmake)\nfind_package(yaml-cpp)\n")
         yaml = "#include <yaml-cpp/yaml.h>\n"
-        self.write("packages/furrow_vision/src/dataset_cwfid.cpp", yaml)
+        self.write("packages/furrow_vision/src/model_file.cpp", yaml)
         self.assert_violations()
         self.write("packages/furrow_vision/src/detector.cpp", yaml)
         self.assert_violations("detector.cpp: includes yaml-cpp/yaml.h")

@@ -9,6 +9,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "furrow_core/file.hpp"
+#include "furrow_core/statistics.hpp"
 #include "furrow_vision/metrics.hpp"
 #include "scratch_folder.hpp"
 #include "verb.hpp"
@@ -60,8 +61,7 @@ void measure(const VisionOptions& options, cv::Size size, std::vector<LoadedImag
       if (!found.ok()) throw std::runtime_error(found.error().message);
       if (i >= 0) ms.push_back(took.count());
     }
-    rows.push_back(
-        {named.name, size, vision::quantile(ms, 0.5), vision::quantile(ms, 0.99), resident_mb()});
+    rows.push_back({named.name, size, quantile(ms, 0.5), quantile(ms, 0.99), resident_mb()});
   }
 }
 

@@ -4,8 +4,9 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "furrow_annotation/coco.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_vision/dataset_coco.hpp"
+#include "furrow_vision/annotated_image.hpp"
 #include "furrow_vision/image_file.hpp"
 #include "furrow_vision/overlay.hpp"
 #include "vision_options.hpp"
@@ -87,7 +88,7 @@ int detect(DetectOptions options) {
     found.images.push_back(std::move(image));
   }
   const fs::path json = fs::path(options.out) / "detections.json";
-  if (const Status written = vision::write_coco(json, found); !written.ok()) {
+  if (const Status written = annotation::write_coco(json, found); !written.ok()) {
     throw std::runtime_error(written.error().message);
   }
   std::cout << text_table(table) << json.string() << '\n';

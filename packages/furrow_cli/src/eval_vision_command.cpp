@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "furrow_core/file.hpp"
+#include "furrow_core/statistics.hpp"
 #include "furrow_vision/image_file.hpp"
 #include "furrow_vision/overlay.hpp"
 #include "scratch_folder.hpp"
@@ -144,7 +145,7 @@ void evaluate_on(EvaluationSet set, std::vector<NamedDetector>& detectors,
     report.rows.push_back({.dataset = set.name,
                            .detector = detectors[k].name,
                            .scores = running[k].evaluation.scores(),
-                           .ms_per_frame = vision::quantile(running[k].ms, 0.5)});
+                           .ms_per_frame = quantile(running[k].ms, 0.5)});
     running[k].gallery.take_to(report.pictures);
   }
   report.parameters.emplace_back(set.name + "_mm_per_px", number(set.resolution_mm_per_px, 3));

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "furrow_annotation/mask.hpp"
+#include "furrow_annotation/read_dataset.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_field/field_csv.hpp"
-#include "furrow_vision/dataset_cwfid.hpp"
+#include "furrow_vision/image_file.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -19,32 +20,29 @@ T value_or_throw(Result<T> result) {
   return std::move(*result);
 }
 
-field::AnnotatedPlant to_plant(const vision::AnnotatedInstance& instance) {
-  field::AnnotatedPlant plant;
-  plant.kind = instance.kind == vision::SubClassKind::kCrop ? field::PlantKind::kCrop
-                                                            : field::PlantKind::kWeed;
-  plant.stem_px = instance.stem_px;
-  std::vector<std::vector<cv::Point>> contours;
-  cv::findContours(instance.mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
-                   instance.box_px.tl());
-  for (const auto& contour : contours) {
-    field::Polygon polygon;
-    for (const cv::Point& point : contour) polygon.emplace_back(point.x, point.y);
-    plant.polygons_px.push_back(std::move(polygon));
-  }
+field::ImagePlant to_plant(const annotation::AnnotatedInstance& instance,
+                           const ImportOptions& options) {
+  const annotation::MaskMeasures measures = annotation::measure(instance);
+  field::ImagePlant plant;
+  plant.kind = instance.kind == annotation::SubClassKind::kCrop ? field::PlantKind::kCrop
+                                                                : field::PlantKind::kWeed;
+  const auto meaning = options.categories.find(instance.category);
+  if (meaning != options.categories.end()) plant.species = meaning->second.species;
+  plant.stem_px = instance.stem_px.value_or(measures.centroid_px);
+  plant.area_px2 = measures.area_px2;
+  plant.radius_px = annotation::reach_px(instance, plant.stem_px);
   return plant;
 }
 
-std::vector<field::AnnotatedImage> read_cwfid_images(const std::filesystem::path& folder) {
-  const vision::Dataset dataset = value_or_throw(vision::read_cwfid(folder));
-  std::vector<field::AnnotatedImage> images;
-  for (const vision::AnnotatedImage& image : dataset.images) {
-    field::AnnotatedImage drawn{
-        image.path.filename().string(), image.width_px, image.height_px, {}};
-    for (const vision::AnnotatedInstance& instance : image.instances) {
-      drawn.plants.push_back(to_plant(instance));
+std::vector<field::PlantImage> to_images(const annotation::Dataset& dataset,
+                                         const ImportOptions& options) {
+  std::vector<field::PlantImage> images;
+  for (const annotation::AnnotatedImage& image : dataset.images) {
+    field::PlantImage measured{image.path.filename().string(), image.width_px, image.height_px, {}};
+    for (const annotation::AnnotatedInstance& instance : image.instances) {
+      if (!instance.crowd) measured.plants.push_back(to_plant(instance, options));
     }
-    images.push_back(std::move(drawn));
+    images.push_back(std::move(measured));
   }
   return images;
 }
@@ -54,25 +52,49 @@ std::string base_name(const std::string& file) {
   return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
 }
 
-field::FieldModel lay(const std::vector<field::AnnotatedImage>& images, const std::string& file,
-                      const ImportOptions& options) {
-  return value_or_throw(
-             field::lay_images(images, options.layout, base_name(file), "imported: " + file))
-      .field;
+field::FieldModel import_images(const std::string& file, const ImportOptions& options,
+                                std::vector<std::string>& notes) {
+  annotation::CocoOptions how;
+  how.strict = options.strict;
+  how.unknown_kind = annotation::UnknownKind::kRefuse;
+  for (const auto& [name, meaning] : options.categories) {
+    how.kinds[name] = meaning.kind == field::PlantKind::kCrop ? annotation::SubClassKind::kCrop
+                                                              : annotation::SubClassKind::kWeed;
+  }
+  auto dataset = annotation::read_dataset(file, vision::read_mask, how);
+  if (!dataset.ok() && dataset.error().code == ErrorCode::kNotFound &&
+      std::filesystem::exists(file)) {
+    throw ConfigError(dataset.error().message + "; say it by --category NAME=crop or NAME=weed");
+  }
+  const annotation::Dataset read = value_or_throw(std::move(dataset));
+  for (std::string& line : annotation::describe(read.report, file)) notes.push_back(line);
+  if (read.report.ignore_regions > 0) {
+    notes.push_back(file + ": " + std::to_string(read.report.ignore_regions) +
+                    " regions to ignore (iscrowd) are no plants");
+  }
+  field::LaidImages laid = value_or_throw(field::lay_images(
+      to_images(read, options), options.layout, base_name(file), "imported: " + file));
+  if (laid.outside > 0) {
+    const std::string message =
+        file + ": " + std::to_string(laid.outside) + " plants with a stem outside their image";
+    if (options.strict) throw ConfigError(message);
+    notes.push_back(message + " left out");
+  }
+  return std::move(laid.field);
 }
 
-field::FieldModel import_file(const std::string& file, const ImportOptions& options) {
-  if (std::filesystem::is_directory(file)) return lay(read_cwfid_images(file), file, options);
+field::FieldModel import_file(const std::string& file, const ImportOptions& options,
+                              std::vector<std::string>& notes) {
+  if (std::filesystem::is_directory(file)) return import_images(file, options, notes);
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension != ".json" && extension != ".csv" && extension != ".geojson") {
-    throw ConfigError(file + " is neither COCO (.json), .csv, .geojson nor a folder of CWFID");
+    throw ConfigError(file +
+                      " is neither COCO (.json), .csv, .geojson nor a folder of annotated images");
   }
+  if (extension == ".json") return import_images(file, options, notes);
   const std::string text = value_or_throw(read_file(file));
   if (extension == ".csv") return value_or_throw(field::from_csv(text, file));
-  if (extension == ".geojson") {
-    return value_or_throw(field::from_geojson(text, file, options.origin));
-  }
-  return lay(value_or_throw(field::parse_coco(text, file, options.categories)), file, options);
+  return value_or_throw(field::from_geojson(text, file, options.origin));
 }
 
 /// Behind what there is, with ids that go on.
@@ -91,11 +113,12 @@ void append(field::FieldModel& field, const field::FieldModel& next, double gap_
 
 }  // namespace
 
-field::FieldModel import_field(const ImportOptions& options) {
-  field::FieldModel field;
+ImportedField import_field(const ImportOptions& options) {
+  ImportedField imported;
+  field::FieldModel& field = imported.field;
   std::string source;
   for (const std::string& file : options.files) {
-    const field::FieldModel next = import_file(file, options);
+    const field::FieldModel next = import_file(file, options, imported.notes);
     source += (source.empty() ? "imported: " : ", ") + base_name(file);
     if (field.plants.empty() && field.length_m == 0.0) {
       field = next;
@@ -109,10 +132,10 @@ field::FieldModel import_field(const ImportOptions& options) {
   if (const Status valid = field::validate(field); !valid.ok()) {
     throw ConfigError(valid.error().message);
   }
-  return field;
+  return imported;
 }
 
-std::pair<std::string, field::CategoryMeaning> parse_category(const std::string& text) {
+std::pair<std::string, CategoryMeaning> parse_category(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
   const auto kind = equals == std::string::npos

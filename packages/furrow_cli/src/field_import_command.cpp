@@ -33,7 +33,9 @@ void import(Options options) {
     constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
     options.import.origin = {options.origin[0], options.origin[1], kRadPerDeg * options.origin[2]};
   }
-  const field::FieldModel field = import_field(options.import);
+  const ImportedField imported = import_field(options.import);
+  for (const std::string& note : imported.notes) std::cerr << "furrow: " << note << '\n';
+  const field::FieldModel& field = imported.field;
   const auto text = extension == ".csv" ? field::to_csv(field) : field::to_geojson(field);
   if (!text.ok()) throw ConfigError(text.error().message);
   if (const Status written = write_file_atomically(options.out, *text); !written.ok()) {
@@ -56,8 +58,8 @@ void add_field_import_command(CLI::App& app, int& /*exit_code*/) {
   ImportOptions& import_options = options->import;
   command
       ->add_option("files", import_options.files,
-                   "COCO (.json), plants (.csv, .geojson), folders of CWFID; along the row in "
-                   "this order")
+                   "COCO (.json), plants (.csv, .geojson), folders of annotated images (CWFID, "
+                   "Carrot-Weed, COCO); along the row in this order")
       ->required();
   command->add_option("--out", options->out, ".csv or .geojson")->required();
   command->add_option("--name", import_options.name, "of the field")->capture_default_str();
@@ -74,6 +76,8 @@ void add_field_import_command(CLI::App& app, int& /*exit_code*/) {
       ->capture_default_str();
   command->add_option("--category", options->categories,
                       "what a category of a COCO file stands for: NAME=crop, NAME=weed:SPECIES");
+  command->add_flag("--strict", import_options.strict,
+                    "refuse a file with a bad annotation, in place of leaving it out");
   command
       ->add_option("--origin", options->origin,
                    "latitude, longitude and heading (degrees, from east to north) of the field's "

@@ -1,25 +1,20 @@
 #include "vision_datasets.hpp"
 
+#include <iostream>
 #include <stdexcept>
 
 #include "console.hpp"
+#include "furrow_annotation/read_dataset.hpp"
 #include "furrow_components/field_source.hpp"
 #include "furrow_components/rendered_dataset.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_vision/dataset_carrot_weed.hpp"
-#include "furrow_vision/dataset_coco.hpp"
-#include "furrow_vision/dataset_cwfid.hpp"
+#include "furrow_vision/image_file.hpp"
 #include "share.hpp"
 
 namespace furrow::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Neither set carries its ground resolution: estimates, which --resolution overrides. Carrot-Weed
-// was taken by hand, so that its own varies.
-constexpr double kCwfidResolution_mm = 0.11;
-constexpr double kCarrotWeedResolution_mm = 0.3;
 
 vision::Dataset value_or_throw(Result<vision::Dataset> dataset) {
   if (!dataset.ok()) throw ConfigError(dataset.error().message);
@@ -50,7 +45,7 @@ EvaluationSet render_evaluation_set(const fs::path& folder, std::int64_t images,
   if (!done.ok()) throw std::runtime_error(done.error().message);
   EvaluationSet set{"rendered", parameters.resolution_mm_per_px, {}};
   for (const char* part : {"evaluation.json", "validation.json", "train.json"}) {
-    vision::Dataset read = value_or_throw(vision::read_coco(folder / part));
+    vision::Dataset read = value_or_throw(annotation::read_coco(folder / part));
     set.dataset.classes = read.classes;
     for (auto& image : read.images) set.dataset.images.push_back(std::move(image));
   }
@@ -58,25 +53,16 @@ EvaluationSet render_evaluation_set(const fs::path& folder, std::int64_t images,
 }
 
 EvaluationSet open_evaluation_set(const fs::path& path) {
-  if (!fs::exists(path)) throw ConfigError("--dataset " + path.string() + ": is not there");
-  if (fs::is_regular_file(path)) {
-    return {path.stem().string(), EvaluationSet{}.resolution_mm_per_px,
-            value_or_throw(vision::read_coco(path))};
+  auto dataset = annotation::read_dataset(path, vision::read_mask);
+  if (!dataset.ok()) throw ConfigError("--dataset " + dataset.error().message);
+  for (const std::string& note : annotation::describe(dataset->report, path.string())) {
+    std::cerr << "furrow: " << note << '\n';
   }
-  if (fs::exists(path / "plant_masks")) {
-    return {"carrot_weed", kCarrotWeedResolution_mm,
-            value_or_throw(vision::read_carrot_weed(path))};
-  }
-  if (fs::exists(path / "masks")) {
-    return {"cwfid", kCwfidResolution_mm, value_or_throw(vision::read_cwfid(path))};
-  }
-  if (fs::exists(path / "evaluation.json")) {
-    const fs::path name = fs::weakly_canonical(path).filename();
-    return {name.string(), EvaluationSet{}.resolution_mm_per_px,
-            value_or_throw(vision::read_coco(path / "evaluation.json"))};
-  }
-  throw ConfigError("--dataset " + path.string() +
-                    ": no data set that Furrow reads (CWFID, Carrot-Weed, or evaluation.json)");
+  EvaluationSet set;
+  set.name = dataset->name;
+  set.resolution_mm_per_px = dataset->resolution_mm_per_px.value_or(set.resolution_mm_per_px);
+  set.dataset = std::move(*dataset);
+  return set;
 }
 
 }  // namespace furrow::cli

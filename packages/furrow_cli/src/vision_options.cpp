@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "furrow_core/statistics.hpp"
 #include "furrow_graph/parameter_file.hpp"
 #include "furrow_vision/image_file.hpp"
 #include "furrow_vision/model_file.hpp"
@@ -46,9 +47,7 @@ std::optional<double> median_depth_m(const cv::Mat& depth_m) {
     }
   }
   if (depths.empty()) return std::nullopt;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return median_element(std::span(depths));
 }
 
 }  // namespace

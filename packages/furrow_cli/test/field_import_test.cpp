@@ -62,7 +62,7 @@ TEST_F(FieldImport, CocoLiesAlongTheRow) {
   ImportOptions options;
   options.files = {file("a.json", kCoco)};
   options.categories.insert(parse_category("Cirsium=weed:thistle"));
-  const field::FieldModel field = import_field(options);
+  const field::FieldModel field = import_field(options).field;
   EXPECT_NEAR(field.length_m, 2.0, 1e-9);
   EXPECT_NEAR(field.width_m, 1.0, 1e-9);
   ASSERT_EQ(field.plants.size(), 2U);
@@ -75,19 +75,50 @@ TEST_F(FieldImport, CocoLiesAlongTheRow) {
   EXPECT_EQ(field.source, "imported: a.json");
 }
 
+TEST_F(FieldImport, CocoCoordinatesBeginAtTheImagesCorner) {
+  ImportOptions options;
+  options.files = {file("a.json", kCoco)};
+  options.categories.insert(parse_category("Cirsium=weed"));
+  const field::FieldModel field = import_field(options).field;
+  // The square from 480 to 520 of 1000 is the middle of the image, and so of the field.
+  EXPECT_NEAR(field.plants[1].p_F_m.y(), 0.0, 1e-9);
+  EXPECT_NEAR(field.plants[1].p_F_m.x(), 1.0, 1e-9);
+}
+
+TEST_F(FieldImport, BadAnnotationsAreLeftOutAndNamed) {
+  const std::string text = R"({
+    "images": [{"id": 1, "file_name": "a.jpg", "width": 640, "height": 480}],
+    "categories": [{"id": 1, "name": "crop"}, {"id": 2, "name": "weed"}],
+    "annotations": [
+      {"image_id": 1, "category_id": 1, "segmentation": [[26, 31, 50, 31]]},
+      {"image_id": 1, "category_id": 1, "segmentation": [], "bbox": [10, 10, 20, 20]},
+      {"image_id": 1, "category_id": 2, "iscrowd": 1,
+       "segmentation": {"size": [480, 640], "counts": [100, 10, 307090]}},
+      {"image_id": 1, "category_id": 2, "segmentation": [[50, 50, 70, 50, 70, 70]]}]})";
+  ImportOptions options;
+  options.files = {file("a.json", text)};
+  const ImportedField imported = import_field(options);
+  EXPECT_EQ(imported.field.plants.size(), 2U);
+  ASSERT_EQ(imported.notes.size(), 3U);
+  EXPECT_NE(imported.notes[0].find("1 of 4 annotations left out"), std::string::npos);
+  EXPECT_NE(imported.notes[1].find("1 of 4 annotations have a box only"), std::string::npos);
+  EXPECT_NE(imported.notes[2].find("1 regions to ignore"), std::string::npos);
+  options.strict = true;
+  EXPECT_THROW((void)import_field(options), ConfigError);
+}
+
 TEST_F(FieldImport, CwfidMasksBecomePlants) {
   ImportOptions options;
   options.files = {cwfid()};
   options.layout.ground_resolution_mm_per_px = 2.0;
-  const field::FieldModel field = import_field(options);
+  const field::FieldModel field = import_field(options).field;
   EXPECT_NEAR(field.length_m, 0.4, 1e-9);
   ASSERT_EQ(field.plants.size(), 2U);
   EXPECT_EQ(field.plants[0].kind, field::PlantKind::kWeed);
   EXPECT_NEAR(field.plants[0].p_F_m.x(), 2e-3 * 49.5, 2e-3);
   EXPECT_NEAR(field.plants[1].p_F_m.x(), 2e-3 * 149.5, 2e-3);
   EXPECT_NEAR(field.plants[1].p_F_m.y(), 0.0, 2e-3);
-  // The outline runs through the middles of its pixels.
-  EXPECT_NEAR(field.plants[1].area_mm2, 40.0 * 40.0 * 4.0, 1e-6);
+  EXPECT_NEAR(field.plants[1].area_mm2, 41.0 * 41.0 * 4.0, 1e-6);
 }
 
 TEST_F(FieldImport, FilesFollowOneAnother) {
@@ -97,7 +128,7 @@ TEST_F(FieldImport, FilesFollowOneAnother) {
   ImportOptions options;
   options.files = {csv, csv};
   options.layout.gap_m = 0.25;
-  const field::FieldModel field = import_field(options);
+  const field::FieldModel field = import_field(options).field;
   EXPECT_NEAR(field.length_m, 4.25, 1e-9);
   ASSERT_EQ(field.plants.size(), 4U);
   EXPECT_NEAR(field.plants[2].p_F_m.x(), 2.75, 1e-9);
@@ -125,6 +156,7 @@ TEST_F(FieldImport, ErrorsNameTheFile) {
       message(file("w.geojson", R"({"type":"FeatureCollection","features":[]})")).find("w.geojson"),
       std::string::npos);
   EXPECT_NE(message(folder_.string()).find("annotations"), std::string::npos);
+  EXPECT_NE(message(file("c.json", kCoco)).find("--category"), std::string::npos);
 }
 
 TEST(Category, IsNameKindAndSpecies) {

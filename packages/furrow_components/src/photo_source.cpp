@@ -1,26 +1,19 @@
 #include "photo_source.hpp"
 
+#include "furrow_annotation/read_dataset.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_vision/dataset_carrot_weed.hpp"
-#include "furrow_vision/dataset_cwfid.hpp"
+#include "furrow_vision/annotated_image.hpp"
+#include "furrow_vision/image_file.hpp"
 
 namespace furrow::components {
 namespace {
-
-Result<vision::Dataset> read_dataset(const std::filesystem::path& folder) {
-  if (std::filesystem::is_directory(folder / "annotations")) return vision::read_cwfid(folder);
-  if (std::filesystem::is_directory(folder / "plant_masks"))
-    return vision::read_carrot_weed(folder);
-  return Error{
-      ErrorCode::kNotFound,
-      folder.string() + ": holds neither annotations/ (CWFID) nor plant_masks/ (Carrot-Weed)"};
-}
 
 simulation::GroundPhoto to_photo(const vision::AnnotatedImage& image) {
   simulation::GroundPhoto photo;
   photo.bgr = image.bgr;
   photo.instance_id = cv::Mat(image.bgr.size(), CV_32SC1, cv::Scalar(-1));
   for (const vision::AnnotatedInstance& instance : image.instances) {
+    if (instance.crowd) continue;  // a region to ignore is no plant
     photo.instance_id(instance.box_px).setTo(static_cast<int>(photo.plants.size()), instance.mask);
     photo.plants.push_back({.kind = instance.kind == vision::SubClassKind::kCrop
                                         ? field::PlantKind::kCrop
@@ -35,7 +28,7 @@ simulation::GroundPhoto to_photo(const vision::AnnotatedImage& image) {
 
 std::vector<simulation::GroundPhoto> load_ground_photos(const std::filesystem::path& folder,
                                                         int limit) {
-  auto dataset = read_dataset(folder);
+  auto dataset = annotation::read_dataset(folder, vision::read_mask);
   if (!dataset.ok()) throw ConfigError(dataset.error().message);
   std::vector<simulation::GroundPhoto> photos;
   for (vision::AnnotatedImage& image : dataset->images) {

@@ -7,9 +7,9 @@
 
 namespace furrow::components {
 
-/// Annotated photographs of a folder, told apart by its layout: CWFID (annotations/) or Carrot-Weed
-/// (plant_masks/). At most `limit`, in the order of their names. Throws ConfigError that names the
-/// folder or file.
+/// Annotated photographs of a folder that annotation::read_dataset reads: CWFID, Carrot-Weed or
+/// COCO. At most `limit`, in the order of the data set. Throws ConfigError that names the folder or
+/// file.
 [[nodiscard]] std::vector<simulation::GroundPhoto> load_ground_photos(
     const std::filesystem::path& folder, int limit);
 

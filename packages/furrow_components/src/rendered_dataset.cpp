@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
+#include "furrow_annotation/coco.hpp"
 #include "furrow_core/random.hpp"
 #include "furrow_field/generator.hpp"
 #include "furrow_geometry/camera.hpp"
 #include "furrow_simulation/renderer.hpp"
-#include "furrow_vision/dataset_coco.hpp"
 #include "furrow_vision/image_file.hpp"
 
 namespace furrow::components {
@@ -284,7 +284,7 @@ Status render_dataset(const RenderedDatasetParameters& parameters,
   }
   constexpr std::array kNames = {"train.json", "validation.json", "evaluation.json"};
   for (std::size_t part = 0; part < parts.size(); ++part) {
-    if (const Status written = vision::write_coco(folder / kNames[part], parts[part]);
+    if (const Status written = annotation::write_coco(folder / kNames[part], parts[part]);
         !written.ok()) {
       return written;
     }

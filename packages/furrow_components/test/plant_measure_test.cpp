@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "furrow_core/statistics.hpp"
 #include "furrow_simulation/renderer.hpp"
 #include "furrow_vision/detector.hpp"
 #include "furrow_vision/growth_stage.hpp"
@@ -21,12 +22,6 @@ struct Measured {
   double as_on_level_ground_mm2 = 0.0;
   double ground_m = 0.0;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A strip of plants of several species and sizes, looked at one after the other by a camera that
 /// hangs low over ground of the deepest waves that the renderer draws.

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "check.hpp"
 #include "distance_grid.hpp"
 #include "furrow_core/random.hpp"
 
@@ -57,7 +56,7 @@ class Generator {
  private:
   [[nodiscard]] Status check() {
     try {
-      check_declared_ranges(p_);
+      validate_parameters(p_);
     } catch (const ConfigError& error) {
       return out_of_range(error.what());
     }

@@ -4,38 +4,34 @@
 #include <cmath>
 #include <utility>
 
-#include "check.hpp"
-
 namespace furrow::field {
 namespace {
 
 constexpr int kLargestSide_px = 100'000;
 
-Result<Plant> place(const AnnotatedPlant& annotated, const ImagePlacement& placement) {
-  const std::optional<Eigen::Vector2d> stem_px =
-      annotated.stem_px ? annotated.stem_px : centroid_px(annotated.polygons_px);
-  if (!stem_px) return Error{ErrorCode::kInvalidArgument, "has neither a stem nor a polygon"};
-  const bool inside = stem_px->allFinite() && stem_px->x() >= -0.5 && stem_px->y() >= -0.5 &&
-                      stem_px->x() <= placement.width_px - 0.5 &&
-                      stem_px->y() <= placement.height_px - 0.5;
-  if (!inside) return Error{ErrorCode::kOutOfRange, "stands outside the image"};
-  double radius_px = 0.0;
-  double area_px2 = 0.0;
-  for (const Polygon& polygon : annotated.polygons_px) {
-    area_px2 += polygon_area_px2(polygon);
-    for (const Eigen::Vector2d& point : polygon) {
-      if (!point.allFinite())
-        return Error{ErrorCode::kOutOfRange, "has a point that is not finite"};
-      radius_px = std::max(radius_px, (point - *stem_px).norm());
-    }
-  }
+bool is_inside(const ImagePlant& plant, const ImagePlacement& placement) {
+  const Eigen::Vector2d& stem_px = plant.stem_px;
+  return stem_px.allFinite() && stem_px.x() >= -0.5 && stem_px.y() >= -0.5 &&
+         stem_px.x() <= placement.width_px - 0.5 && stem_px.y() <= placement.height_px - 0.5;
+}
+
+Plant place(const ImagePlant& measured, const ImagePlacement& placement) {
+  const double resolution_m = placement.resolution_m_per_px;
   Plant plant;
-  plant.kind = annotated.kind;
-  plant.species = annotated.species;
-  plant.p_F_m = placement.to_field(*stem_px);
-  plant.radius_m = radius_px * placement.resolution_m_per_px;
-  plant.area_mm2 = 1e6 * area_px2 * placement.resolution_m_per_px * placement.resolution_m_per_px;
+  plant.kind = measured.kind;
+  plant.species = measured.species;
+  plant.p_F_m = placement.to_field(measured.stem_px);
+  plant.radius_m = measured.radius_px * resolution_m;
+  plant.area_mm2 = 1e6 * measured.area_px2 * resolution_m * resolution_m;
   return plant;
+}
+
+/// Rounding must not push a stem on the outer edge out of the field.
+void keep_inside(FieldModel& field) {
+  for (Plant& plant : field.plants) {
+    plant.p_F_m.x() = std::clamp(plant.p_F_m.x(), 0.0, field.length_m);
+    plant.p_F_m.y() = std::clamp(plant.p_F_m.y(), -0.5 * field.width_m, 0.5 * field.width_m);
+  }
 }
 
 }  // namespace
@@ -83,11 +79,11 @@ Eigen::Vector2d ImagePlacement::to_pixel(const Eigen::Vector2d& p_F_m) const {
   return {along_px - 0.5, 0.5 * (height_px - 1) - left_px};
 }
 
-Result<LaidImages> lay_images(const std::vector<AnnotatedImage>& images,
+Result<LaidImages> lay_images(const std::vector<PlantImage>& images,
                               const LayoutParameters& parameters, const std::string& name,
                               const std::string& source) {
   try {
-    check_declared_ranges(parameters);
+    validate_parameters(parameters);
   } catch (const ConfigError& error) {
     return Error{ErrorCode::kOutOfRange, error.what()};
   }
@@ -97,11 +93,11 @@ Result<LaidImages> lay_images(const std::vector<AnnotatedImage>& images,
   field.name = name;
   field.source = source;
   double x_m = 0.0;
-  for (const AnnotatedImage& image : images) {
-    const std::string who = "image '" + image.name + "'";
+  for (const PlantImage& image : images) {
     if (image.width_px < 1 || image.height_px < 1 || image.width_px > kLargestSide_px ||
         image.height_px > kLargestSide_px) {
-      return Error{ErrorCode::kOutOfRange, who + ": its size must be in [1, 100000] pixels"};
+      return Error{ErrorCode::kOutOfRange,
+                   "image '" + image.name + "': its size must be in [1, 100000] pixels"};
     }
     const ImagePlacement placement{image.name,
                                    image.width_px,
@@ -109,24 +105,19 @@ Result<LaidImages> lay_images(const std::vector<AnnotatedImage>& images,
                                    1e-3 * parameters.ground_resolution_mm_per_px,
                                    parameters.travel == "up",
                                    x_m};
-    for (std::size_t i = 0; i < image.plants.size(); ++i) {
-      Result<Plant> plant = place(image.plants[i], placement);
-      if (!plant.ok()) {
-        return Error{plant.error().code,
-                     who + ": plant " + std::to_string(i) + " " + plant.error().message};
+    for (const ImagePlant& plant : image.plants) {
+      if (is_inside(plant, placement)) {
+        field.plants.push_back(place(plant, placement));
+      } else {
+        ++laid.outside;
       }
-      field.plants.push_back(std::move(*plant));
     }
     field.length_m = x_m + placement.length_m();
     field.width_m = std::max(field.width_m, placement.width_m());
     x_m = field.length_m + parameters.gap_m;
     laid.placements.push_back(placement);
   }
-  for (Plant& plant : field.plants) {
-    // Rounding must not push a stem on the outer edge out of the field.
-    plant.p_F_m.x() = std::clamp(plant.p_F_m.x(), 0.0, field.length_m);
-    plant.p_F_m.y() = std::clamp(plant.p_F_m.y(), -0.5 * field.width_m, 0.5 * field.width_m);
-  }
+  keep_inside(field);
   sort_plants(field);
   std::int64_t id = 0;
   for (Plant& plant : field.plants) plant.id = id++;

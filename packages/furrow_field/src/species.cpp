@@ -6,7 +6,6 @@
 #include <numbers>
 #include <set>
 
-#include "check.hpp"
 #include "furrow_core/error.hpp"
 
 namespace furrow::field {
@@ -98,7 +97,7 @@ SpeciesTable::SpeciesTable(std::vector<Species> species) : species_(std::move(sp
     }
     if (!seen.insert(entry.name).second) throw ConfigError({}, key, "the name is there twice");
     try {
-      check_declared_ranges(entry);
+      validate_parameters(entry);
     } catch (const ConfigError& error) {
       throw ConfigError({}, key, error.what());
     }

@@ -1,5 +1,7 @@
 #include "furrow_vision/annotated_image.hpp"
 
+#include <algorithm>
+
 #include "furrow_core/file.hpp"
 #include "furrow_vision/image_file.hpp"
 
@@ -42,6 +44,23 @@ cv::Mat semantic_labels(const AnnotatedImage& image) {
     labels(instance.box_px).setTo(instance.kind == SubClassKind::kCrop ? 2 : 1, instance.mask);
   }
   return labels;
+}
+
+std::vector<AnnotatedInstance> to_annotations(const std::vector<Instance>& instances,
+                                              const std::vector<SubClass>& classes) {
+  std::vector<AnnotatedInstance> annotations;
+  for (const Instance& instance : instances) {
+    const auto best = std::max_element(instance.class_scores.begin(), instance.class_scores.end());
+    const SubClass& sub_class = classes.at(best - instance.class_scores.begin());
+    annotations.push_back({.kind = sub_class.kind,
+                           .category = sub_class.name,
+                           .box_px = instance.box_px,
+                           .mask = instance.mask,
+                           .stem_px = instance.stem_px,
+                           .area_mm2 = instance.area_mm2,
+                           .score = instance.score * *best});
+  }
+  return annotations;
 }
 
 }  // namespace furrow::vision

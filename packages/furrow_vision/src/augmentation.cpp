@@ -5,7 +5,6 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "check_ranges.hpp"
 #include "furrow_core/error.hpp"
 
 namespace furrow::vision {
@@ -163,7 +162,7 @@ void AugmentationParameters::visit(ParameterVisitor& v) {
 }
 
 Augmenter::Augmenter(const AugmentationParameters& parameters) : parameters_(parameters) {
-  check_ranges(parameters_);
+  validate_parameters(parameters_);
   if (parameters_.box_gain_min > parameters_.box_gain_max ||
       parameters_.scale_min > parameters_.scale_max) {
     throw ConfigError("augmentation: a least value is above its greatest");

@@ -6,11 +6,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "check_ranges.hpp"
-#include "dataset_common.hpp"
+#include "furrow_annotation/coco.hpp"
+#include "furrow_annotation/mask.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_core/random.hpp"
-#include "furrow_vision/dataset_coco.hpp"
 #include "furrow_vision/image_file.hpp"
 
 namespace furrow::vision {
@@ -57,7 +56,7 @@ void add_vegetation_without_class(const SubClass& sub_class, AnnotatedImage& ima
   crowd.kind = sub_class.kind;
   crowd.category = sub_class.name;
   crowd.crowd = true;
-  if (cut_to_box(without, crowd)) image.instances.push_back(std::move(crowd));
+  if (annotation::cut_to_box(without, crowd)) image.instances.push_back(std::move(crowd));
 }
 
 }  // namespace
@@ -124,7 +123,7 @@ void scale_image(AnnotatedImage& image, double scale) {
   for (AnnotatedInstance& instance : image.instances) {
     cv::Mat full = cv::Mat::zeros(before, CV_8U);
     instance.mask.copyTo(full(instance.box_px));
-    if (!cut_to_box(scaled_mask(full, after), instance)) continue;
+    if (!annotation::cut_to_box(scaled_mask(full, after), instance)) continue;
     if (instance.stem_px) {
       instance.stem_px = Eigen::Vector2d((instance.stem_px->x() + 0.5) * scale_u - 0.5,
                                          (instance.stem_px->y() + 0.5) * scale_v - 0.5);
@@ -145,7 +144,7 @@ Status convert_dataset(const Dataset& dataset, const ConversionParameters& param
                        std::uint64_t seed, const std::filesystem::path& folder,
                        const std::function<void(std::size_t)>& progress) {
   try {
-    check_ranges(parameters);
+    validate_parameters(parameters);
   } catch (const ConfigError& error) {
     return Error{ErrorCode::kOutOfRange, error.what()};
   }
@@ -174,7 +173,7 @@ Status convert_dataset(const Dataset& dataset, const ConversionParameters& param
       image.vegetation.release();
       progress(++done);
     }
-    return write_coco(folder / (std::string(name) + ".json"), part);
+    return annotation::write_coco(folder / (std::string(name) + ".json"), part);
   };
   if (const Status s = write_part(split.train, "train", parameters.scale, false); !s.ok()) return s;
   if (const Status s = write_part(split.validation, "validation", parameters.scale, false);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "furrow_core/statistics.hpp"
+
 namespace furrow::vision {
 namespace {
 
@@ -22,12 +24,6 @@ struct MedianDepths {
   double ground_m = 0.0;
   double canopy_m = 0.0;
 };
-
-double median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Of the soil around a plant and of the plant; nothing where either is not known.
 std::optional<MedianDepths> depths_at(const RgbdView& view, const cv::Mat& vegetation,
@@ -56,7 +52,7 @@ std::optional<MedianDepths> depths_at(const RgbdView& view, const cv::Mat& veget
     }
   }
   if (ground.size() < kMinSamples || canopy.empty()) return std::nullopt;
-  return MedianDepths{median(ground), median(canopy)};
+  return MedianDepths{median_element(std::span(ground)), median_element(std::span(canopy))};
 }
 
 }  // namespace
@@ -142,7 +138,7 @@ void measure_instance(const RgbdView& view, Instance& instance) {
   instance.depth_measured = !depths.empty() && static_cast<int>(depths.size()) * 10 >= pixels;
   double fill_m = view.ground_distance_m;
   if (instance.depth_measured) {
-    fill_m = median(depths);
+    fill_m = median_element(std::span(depths));
   } else {
     depths.clear();
     squares_m2 = 0.0;

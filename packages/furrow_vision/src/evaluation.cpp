@@ -1,5 +1,7 @@
 #include "furrow_vision/evaluation.hpp"
 
+#include "furrow_core/statistics.hpp"
+
 namespace furrow::vision {
 namespace {
 

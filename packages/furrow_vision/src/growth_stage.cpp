@@ -1,6 +1,5 @@
 #include "furrow_vision/growth_stage.hpp"
 
-#include "check_ranges.hpp"
 #include "furrow_core/error.hpp"
 
 namespace furrow::vision {
@@ -43,7 +42,7 @@ void GrowthStageParameters::visit(ParameterVisitor& v) {
 
 GrowthStageEstimator::GrowthStageEstimator(const GrowthStageParameters& parameters)
     : parameters_(parameters) {
-  check_ranges(parameters_);
+  validate_parameters(parameters_);
   const auto& p = parameters_;
   if (!(p.two_leaves_mm2 > 0.0 && p.four_leaves_mm2 > p.two_leaves_mm2 &&
         p.six_leaves_mm2 > p.four_leaves_mm2 && p.eight_leaves_mm2 > p.six_leaves_mm2)) {

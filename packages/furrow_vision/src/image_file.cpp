@@ -54,6 +54,10 @@ Result<cv::Mat> read_image(const fs::path& file, ImageChannels channels) {
   return image;
 }
 
+Result<cv::Mat> read_mask(const fs::path& file) {
+  return read_image(file, ImageChannels::kGrey);
+}
+
 Status write_image(const fs::path& file, const cv::Mat& image) {
   if (!codecs().ok()) return codecs().error();
   bool written = false;

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "check_ranges.hpp"
 #include "crop_rows.hpp"
 #include "instance_cutting.hpp"
 #include "plant_grouping.hpp"
@@ -26,7 +25,7 @@ double log_normal(double value, double median, double log_sd) {
 IndexDetector::IndexDetector(const IndexDetectorParameters& parameters)
     : parameters_(parameters),
       classes_{{"crop", SubClassKind::kCrop}, {"weed", SubClassKind::kWeed}} {
-  check_ranges(parameters_);
+  validate_parameters(parameters_);
 }
 
 IndexDetector::~IndexDetector() = default;

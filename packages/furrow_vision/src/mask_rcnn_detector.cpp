@@ -4,7 +4,6 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "check_ranges.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_vision/region_proposals.hpp"
 #include "network.hpp"
@@ -124,7 +123,7 @@ class MaskRcnnDetector::Implementation {
   };
 
   static MaskRcnnParameters checked(const MaskRcnnParameters& parameters) {
-    check_ranges(parameters);
+    validate_parameters(parameters);
     return parameters;
   }
 

@@ -139,13 +139,4 @@ void add_measure_errors(const std::vector<AnnotatedInstance>& truth,
   }
 }
 
-double quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return kNaN;
-  std::sort(values.begin(), values.end());
-  const double at = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
-}
-
 }  // namespace furrow::vision

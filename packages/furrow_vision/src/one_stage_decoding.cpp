@@ -7,6 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "furrow_core/point_grid.hpp"
+#include "furrow_core/statistics.hpp"
+
 namespace furrow::vision {
 namespace {
 
@@ -23,54 +26,19 @@ Eigen::Vector2d offset_at(const OneStageMaps& maps, int row, int column, const C
                                                maps.offset_v.at<float>(row, column));
 }
 
-/// Finds the nearest of a set of points within a bounded distance.
-class NearestPoint {
- public:
-  NearestPoint(const std::vector<StemPeak>& stems, double bucket_px)
-      : stems_(stems), bucket_px_(bucket_px) {
-    for (std::size_t i = 0; i < stems.size(); ++i) {
-      buckets_[key(stems[i].stem_px)].push_back(static_cast<int>(i));
-    }
-  }
-  /// -1: none. Exact for distances up to the bucket's side.
-  [[nodiscard]] int find(const Eigen::Vector2d& at, double reach_px) const {
-    int best = -1;
-    double best_px2 = reach_px * reach_px;
-    const auto [u, v] = key(at);
-    for (int b = v - 1; b <= v + 1; ++b) {
-      for (int a = u - 1; a <= u + 1; ++a) {
-        const auto bucket = buckets_.find({a, b});
-        if (bucket == buckets_.end()) continue;
-        for (const int i : bucket->second) {
-          const double px2 = (stems_[i].stem_px - at).squaredNorm();
-          if (px2 <= best_px2) {
-            best = i;
-            best_px2 = px2;
-          }
-        }
-      }
-    }
-    return best;
-  }
+std::vector<Eigen::Vector2d> places_of(const std::vector<StemPeak>& stems) {
+  std::vector<Eigen::Vector2d> places;
+  for (const StemPeak& stem : stems) places.push_back(stem.stem_px);
+  return places;
+}
 
- private:
-  [[nodiscard]] std::pair<int, int> key(const Eigen::Vector2d& p) const {
-    constexpr double kFar = 1e8;  // what lies beyond shares a bucket
-    return {static_cast<int>(std::clamp(std::floor(p.x() / bucket_px_), -kFar, kFar)),
-            static_cast<int>(std::clamp(std::floor(p.y() / bucket_px_), -kFar, kFar))};
-  }
-  const std::vector<StemPeak>& stems_;
-  double bucket_px_;
-  std::map<std::pair<int, int>, std::vector<int>> buckets_;
-};
-
-Eigen::Vector2d median(std::vector<Eigen::Vector2d> points) {
-  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+/// Each coordinate on its own.
+Eigen::Vector2d median_point(std::vector<Eigen::Vector2d> points) {
   Eigen::Vector2d result;
   for (int axis = 0; axis < 2; ++axis) {
-    std::nth_element(points.begin(), middle, points.end(),
-                     [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
-    result[axis] = (*middle)[axis];
+    result[axis] = median_element(std::span(points), [axis](const auto& a, const auto& b) {
+      return a[axis] < b[axis];
+    })[axis];
   }
   return result;
 }
@@ -131,7 +99,8 @@ class Decoder {
   }
 
   void take_votes() {
-    const NearestPoint nearest(stems_, most_reach_px_);
+    const auto places = places_of(stems_);
+    const PointGrid<Eigen::Vector2d> stems(places, most_reach_px_);
     votes_.assign(stems_.size(), 0);
     leftover_ = cv::Mat::zeros(vegetation_.size(), CV_8U);
     for (int v = 0; v < vegetation_.rows; ++v) {
@@ -139,10 +108,10 @@ class Decoder {
       for (int u = 0; u < vegetation_.cols; ++u) {
         if (set[u] == 0) continue;
         const Eigen::Vector2d offset = offset_at(maps_, v, u, grid_);
-        const int stem = nearest.find(centre_of(u, v, grid_) + offset, reach_px(offset));
-        if (stem >= 0) {
-          labels_.at<int>(v, u) = stem + 1;
-          ++votes_[stem];
+        const auto stem = stems.nearest(centre_of(u, v, grid_) + offset, reach_px(offset));
+        if (stem) {
+          labels_.at<int>(v, u) = static_cast<int>(*stem) + 1;
+          ++votes_[*stem];
         } else {
           leftover_.at<std::uint8_t>(v, u) = 255;
         }
@@ -172,7 +141,8 @@ class Decoder {
         if (group[u] > 0) cells[group[u]].emplace_back(u, v);
       }
     }
-    const NearestPoint nearest(stems_, 3.0 * most_reach_px_);
+    const auto places = places_of(stems_);
+    const PointGrid<Eigen::Vector2d> stems(places, 3.0 * most_reach_px_);
     const double cell_mm2 = std::pow(grid_.stride_px * grid_.mm_per_px, 2);
     const cv::Mat voted = labels_.clone();  // so that the order of groups does not matter
     for (const auto& group : cells) {
@@ -185,8 +155,9 @@ class Decoder {
         mean_reach_px += reach_px(offset) / static_cast<double>(group.size());
         votes.push_back(centre_of(cell.x, cell.y, grid_) + offset);
       }
-      const Eigen::Vector2d vote = median(std::move(votes));
-      int label = nearest.find(vote, 3.0 * mean_reach_px) + 1;
+      const Eigen::Vector2d vote = median_point(std::move(votes));
+      const auto stem = stems.nearest(vote, 3.0 * mean_reach_px);
+      int label = stem ? static_cast<int>(*stem) + 1 : 0;
       if (label == 0 || !touches(voted, group, label)) {
         const bool large =
             static_cast<double>(group.size()) * cell_mm2 >= parameters_.min_plant_area_mm2;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "check_ranges.hpp"
 #include "furrow_core/error.hpp"
 #include "instance_cutting.hpp"
 #include "network.hpp"
@@ -67,7 +66,7 @@ class OneStageDetector::Implementation {
 
  private:
   static OneStageParameters checked(const OneStageParameters& parameters) {
-    check_ranges(parameters);
+    validate_parameters(parameters);
     return parameters;
   }
 

@@ -5,8 +5,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
-#include "furrow_vision/dataset_coco.hpp"
-#include "temporary_folder.hpp"
+#include "furrow_annotation/coco.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
 
 namespace furrow::vision {
 namespace {
@@ -104,7 +104,8 @@ TEST(ConvertDataset, WritesPartsThatComeBack) {
   ASSERT_TRUE(
       convert_dataset(dataset, {.scale = 0.5}, 1, out, [&](std::size_t n) { done = n; }).ok());
   EXPECT_EQ(done, 6u);
-  auto train = read_coco(out / "train.json"), evaluation = read_coco(out / "evaluation.json");
+  auto train = annotation::read_coco(out / "train.json"),
+       evaluation = annotation::read_coco(out / "evaluation.json");
   ASSERT_TRUE(train.ok() && evaluation.ok());
   EXPECT_EQ(train->images.size(), 2u);
   ASSERT_EQ(evaluation->images.size(), 3u);

@@ -4,8 +4,8 @@
 
 #include "furrow_core/file.hpp"
 #include "furrow_core/random.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
 #include "furrow_vision/annotated_image.hpp"
-#include "temporary_folder.hpp"
 
 namespace furrow::vision {
 namespace {

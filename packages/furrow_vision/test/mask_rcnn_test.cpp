@@ -6,10 +6,10 @@
 
 #include "furrow_core/error.hpp"
 #include "furrow_core/file.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
 #include "furrow_vision/mask_rcnn_detector.hpp"
 #include "furrow_vision/one_stage_detector.hpp"
 #include "furrow_vision/region_proposals.hpp"
-#include "temporary_folder.hpp"
 
 namespace furrow::vision {
 namespace {

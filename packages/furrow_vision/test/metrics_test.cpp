@@ -132,12 +132,6 @@ TEST(MeasureErrors, OfStemsAndAreas) {
   EXPECT_NEAR(errors.area_relative[0], 0.1, 1e-12);
 }
 
-TEST(Quantile, IsLinearBetweenValues) {
-  EXPECT_DOUBLE_EQ(quantile({3.0, 1.0, 2.0, 4.0}, 0.5), 2.5);
-  EXPECT_DOUBLE_EQ(quantile({7.0}, 0.95), 7.0);
-  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
-}
-
 TEST(VisionEvaluation, LeavesVegetationWithoutAClassOutOfTheClasses) {
   const auto square = [](int u) {
     AnnotatedInstance plant;

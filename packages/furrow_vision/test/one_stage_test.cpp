@@ -6,10 +6,10 @@
 
 #include "furrow_core/error.hpp"
 #include "furrow_core/file.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
 #include "furrow_vision/detector_choice.hpp"
 #include "furrow_vision/one_stage_decoding.hpp"
 #include "furrow_vision/one_stage_detector.hpp"
-#include "temporary_folder.hpp"
 
 namespace furrow::vision {
 namespace {

@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "furrow_vision/dataset_carrot_weed.hpp"
-#include "furrow_vision/dataset_cwfid.hpp"
+#include "furrow_annotation/carrot_weed.hpp"
+#include "furrow_annotation/cwfid.hpp"
+#include "furrow_vision/annotated_image.hpp"
+#include "furrow_vision/image_file.hpp"
 #include "furrow_vision/metrics.hpp"
 #include "furrow_vision/vegetation_index.hpp"
 
@@ -36,7 +38,7 @@ double vegetation_iou(Dataset& dataset, std::size_t images) {
 TEST(RealData, CwfidVegetation) {
   const fs::path folder = data_folder() / "cwfid";
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no real images in " << folder;
-  auto dataset = read_cwfid(folder);
+  auto dataset = annotation::read_cwfid(folder, read_mask);
   ASSERT_TRUE(dataset.ok()) << dataset.error().message;
   EXPECT_GT(vegetation_iou(*dataset, 8), 0.87);
 }
@@ -44,7 +46,7 @@ TEST(RealData, CwfidVegetation) {
 TEST(RealData, CarrotWeedVegetation) {
   const fs::path folder = data_folder() / "carrot_weed";
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no real images in " << folder;
-  auto dataset = read_carrot_weed(folder);
+  auto dataset = annotation::read_carrot_weed(folder, read_mask);
   ASSERT_TRUE(dataset.ok()) << dataset.error().message;
   EXPECT_GT(vegetation_iou(*dataset, 5), 0.84);
 }

@@ -48,15 +48,23 @@ def _decompress(text):
     return counts
 
 
-def mask_of(annotation, height, width):
-    segmentation = annotation["segmentation"]
-    if isinstance(segmentation, dict):
-        return decode_rle(segmentation)
-    mask = np.zeros((height, width), np.uint8)
-    for polygon in segmentation:
-        points = np.round(np.asarray(polygon, np.float64).reshape(-1, 2)).astype(np.int32)
-        cv2.fillPoly(mask, [points], 1)
-    return mask
+def mask_of(annotation, file):
+    """The mask of an annotation. Polygons and boxes have one reader, that of the furrow command."""
+    segmentation = annotation.get("segmentation")
+    if not isinstance(segmentation, dict):
+        raise SystemExit(f"{file}: annotation {annotation.get('id')} has no run-length mask; bring the "
+                         "data set into the form that is trained on: furrow dataset convert IN OUT")
+    return decode_rle(segmentation)
+
+
+def stem_of(annotation, category):
+    """The pixel of the keypoint that the category calls "stem", None where it is not labelled."""
+    names = category.get("keypoints", [])
+    keypoints = annotation.get("keypoints") or []
+    if "stem" not in names or len(keypoints) < 3 * len(names):
+        return None
+    u, v, visibility = keypoints[3 * names.index("stem"):][:3]
+    return (u, v) if visibility > 0 else None
 
 
 class CocoSet:
@@ -83,8 +91,9 @@ class CocoSet:
             name = categories[annotation["category_id"]]["name"]
             if name not in index:
                 raise SystemExit(f"{file}: category '{name}' is not one of the model's classes")
-            by_image.setdefault(annotation["image_id"], []).append((index[name], annotation))
-        self.items += [(file.parent / image["file_name"], by_image.get(image["id"], []))
+            stem = stem_of(annotation, categories[annotation["category_id"]])
+            by_image.setdefault(annotation["image_id"], []).append((index[name], stem, annotation))
+        self.items += [(file.parent / image["file_name"], file, by_image.get(image["id"], []))
                        for image in content["images"] if image.get("labelled", True)]
 
     def __len__(self):
@@ -102,21 +111,18 @@ class CocoSet:
         return self.decoded[i]
 
     def _decode(self, i):
-        path, annotations = self.items[i]
+        path, file, annotations = self.items[i]
         image = cv2.imread(str(path), cv2.IMREAD_COLOR)
         if image is None:
             raise SystemExit(f"{path}: not an image")
         ids = np.full(image.shape[:2], SOIL, np.int16)
         plants = []
-        for class_index, annotation in annotations:
-            mask = mask_of(annotation, *image.shape[:2])
+        for class_index, stem, annotation in annotations:
+            mask = mask_of(annotation, file)
             if annotation.get("iscrowd"):
                 ids[(mask > 0) & (ids == SOIL)] = UNKNOWN
                 continue
-            keypoints = annotation.get("keypoints")
-            if keypoints and keypoints[2] > 0:
-                stem = keypoints[:2]
-            else:
+            if stem is None:
                 rows, columns = np.nonzero(mask)
                 if len(rows) == 0:
                     continue

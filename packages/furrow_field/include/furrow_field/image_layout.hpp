@@ -7,10 +7,25 @@
 
 #include "furrow_core/parameters.hpp"
 #include "furrow_core/result.hpp"
-#include "furrow_field/annotations.hpp"
 #include "furrow_field/field_model.hpp"
 
 namespace furrow::field {
+
+/// A plant as it was measured in an image. Pixel (0, 0) is the centre of the upper left pixel.
+struct ImagePlant {
+  PlantKind kind = PlantKind::kWeed;
+  std::string species;  ///< empty: not known
+  Eigen::Vector2d stem_px = Eigen::Vector2d::Zero();
+  double area_px2 = 0.0;
+  double radius_px = 0.0;  ///< from the stem to the farthest part of the plant
+};
+
+struct PlantImage {
+  std::string name;
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<ImagePlant> plants;
+};
 
 struct LayoutParameters {
   double ground_resolution_mm_per_px = 1.0;
@@ -39,13 +54,14 @@ struct ImagePlacement {
 struct LaidImages {
   FieldModel field;
   std::vector<ImagePlacement> placements;
+  /// Plants that were left out because their stem lies outside their image.
+  std::size_t outside = 0;
 };
 
-/// Lays the images' plants one after another along the row. A plant stands at its marked stem, else
-/// at the centroid of its polygons; its radius is that of a disc that reaches its farthest polygon
-/// point; its area comes from the polygons. Plants without points, or whose stem lies outside their
-/// image, are an Error. `source` goes into the field as it is.
-[[nodiscard]] Result<LaidImages> lay_images(const std::vector<AnnotatedImage>& images,
+/// Lays the images' plants one after another along the row. Errors: kInvalidArgument without an
+/// image, kOutOfRange for sizes and parameters outside their range. `source` goes into the field as
+/// it is.
+[[nodiscard]] Result<LaidImages> lay_images(const std::vector<PlantImage>& images,
                                             const LayoutParameters& parameters,
                                             const std::string& name, const std::string& source);
 

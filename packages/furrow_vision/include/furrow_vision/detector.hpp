@@ -6,18 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "furrow_annotation/dataset.hpp"
 #include "furrow_core/result.hpp"
 #include "furrow_geometry/camera.hpp"
 
 namespace furrow::vision {
 
-enum class SubClassKind { kCrop, kWeed };
-
-/// One entry of a detector's class list: a species (or a category) and what it counts as.
-struct SubClass {
-  std::string name;
-  SubClassKind kind = SubClassKind::kWeed;
-};
+using annotation::kMaxImageArea_px;
+using annotation::kMaxImageSide_px;
+using annotation::SubClass;
+using annotation::SubClassKind;
 
 /// One plant seen in one image. Pixels are those of the image given, (0, 0) the centre of the upper
 /// left one.
@@ -65,10 +63,6 @@ class Detector {
   /// Forgets what was kept from earlier frames.
   virtual void reset() {}
 };
-
-/// Side and area limits of images, so that a corrupt header cannot fill the memory.
-constexpr int kMaxImageSide_px = 16384;
-constexpr int kMaxImageArea_px = 64 * 1024 * 1024;
 
 /// What each detector asks of a view before it looks at a pixel.
 [[nodiscard]] Status check_view(const RgbdView& view);

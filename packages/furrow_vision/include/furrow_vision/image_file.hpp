@@ -17,6 +17,8 @@ enum class ImageChannels { kGrey, kColour, kAsStored };
 /// 8-bit grey, 8-bit BGR, or what is in the file. Errors, with the file's name: kNotFound, and
 /// kParse for what is no image.
 [[nodiscard]] Result<cv::Mat> read_image(const std::filesystem::path& file, ImageChannels channels);
+/// A mask of 8 bits as it is stored; errors as read_image.
+[[nodiscard]] Result<cv::Mat> read_mask(const std::filesystem::path& file);
 /// The suffix tells the format. Errors: kIo.
 [[nodiscard]] Status write_image(const std::filesystem::path& file, const cv::Mat& image);
 /// Quality from 0 to 100. Errors: kIo.

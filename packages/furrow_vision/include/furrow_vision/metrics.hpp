@@ -130,7 +130,4 @@ void add_measure_errors(const std::vector<AnnotatedInstance>& truth,
                         const std::vector<Instance>& detections,
                         const geometry::PinholeCamera& camera, double min_iou, MeasureErrors& into);
 
-/// Linear between order statistics; NaN when empty.
-[[nodiscard]] double quantile(std::vector<double> values, double fraction);
-
 }  // namespace furrow::vision

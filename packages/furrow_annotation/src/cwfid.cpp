@@ -1,21 +1,17 @@
-#include "furrow_vision/dataset_cwfid.hpp"
+#include "furrow_annotation/cwfid.hpp"
 
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "dataset_common.hpp"
+#include "folder_listing.hpp"
+#include "furrow_annotation/mask.hpp"
 #include "furrow_core/file.hpp"
+#include "json_node.hpp"
 
-namespace furrow::vision {
+namespace furrow::annotation {
 namespace {
-
-/// A malformed annotation, on its way to the Error that names the file.
-struct Malformed {
-  std::string key;
-  std::string message;
-};
 
 std::vector<double> numbers(const YAML::Node& node, const std::string& key) {
   std::vector<double> values;
@@ -27,10 +23,10 @@ std::vector<double> numbers(const YAML::Node& node, const std::string& key) {
       values.push_back(node.as<double>());
     }
   } catch (const YAML::Exception&) {
-    throw Malformed{key, "holds what is not a number"};
+    throw Malformed{key, "an entry is not a number"};
   }
   for (const double value : values) {
-    if (!std::isfinite(value)) throw Malformed{key, "holds a number that is not finite"};
+    if (!std::isfinite(value)) throw Malformed{key, "an entry is not finite"};
   }
   return values;
 }
@@ -110,8 +106,8 @@ std::vector<AnnotatedInstance> read_annotation(const std::string& text, const cv
 
 }  // namespace
 
-Result<Dataset> read_cwfid(const std::filesystem::path& folder) {
-  const auto files = list_files(folder / "annotations", {".yaml"});
+Result<Dataset> read_cwfid(const std::filesystem::path& folder, const MaskReader& read_mask) {
+  const auto files = list_files(folder / "annotations", ".yaml");
   if (!files) return files.error();
   if (files->empty()) {
     return Error{ErrorCode::kNotFound, (folder / "annotations").string() + ": holds no YAML files"};
@@ -132,7 +128,7 @@ Result<Dataset> read_cwfid(const std::filesystem::path& folder) {
     if (!text) return text.error();
     image.width_px = mask->cols;
     image.height_px = mask->rows;
-    image.vegetation = *mask == 0;  // the files draw soil white
+    image.vegetation = *mask == 0;
     try {
       image.instances = read_annotation(*text, image.vegetation);
     } catch (const Malformed& failure) {
@@ -143,4 +139,4 @@ Result<Dataset> read_cwfid(const std::filesystem::path& folder) {
   return dataset;
 }
 
-}  // namespace furrow::vision
+}  // namespace furrow::annotation

@@ -1,8 +1,9 @@
-#include "furrow_vision/coco_rle.hpp"
+#include "furrow_annotation/run_lengths.hpp"
 
+#include <algorithm>
 #include <limits>
 
-namespace furrow::vision {
+namespace furrow::annotation {
 
 RunLengths encode_run_lengths(const cv::Mat& mask) {
   RunLengths runs;
@@ -23,7 +24,30 @@ RunLengths encode_run_lengths(const cv::Mat& mask) {
   return runs;
 }
 
-Result<cv::Mat> decode_run_lengths(const RunLengths& runs, cv::Size size) {
+namespace {
+
+/// Calls `visit(column, first_row, end_row)` for each vertical stretch of set pixels.
+template <class Visit>
+void each_stretch(const RunLengths& runs, int height, const Visit& visit) {
+  std::int64_t at = 0;
+  bool set = false;
+  for (const std::uint32_t run : runs) {
+    const std::int64_t end = at + run;
+    while (set && at < end) {
+      const std::int64_t column = at / height;
+      const std::int64_t stop = std::min<std::int64_t>(end, (column + 1) * height);
+      visit(static_cast<int>(column), static_cast<int>(at - column * height),
+            static_cast<int>(stop - column * height));
+      at = stop;
+    }
+    at = end;
+    set = !set;
+  }
+}
+
+}  // namespace
+
+Result<BoxedMask> decode_run_lengths(const RunLengths& runs, cv::Size size) {
   const std::uint64_t total = static_cast<std::uint64_t>(size.width) * size.height;
   std::uint64_t sum = 0;
   for (const std::uint32_t run : runs) sum += run;
@@ -31,16 +55,21 @@ Result<cv::Mat> decode_run_lengths(const RunLengths& runs, cv::Size size) {
     return Error{ErrorCode::kParse, "run lengths cover " + std::to_string(sum) +
                                         " pixels of a mask of " + std::to_string(total)};
   }
-  // Filled along rows of the transposed mask, whose memory is in the order of the runs.
-  cv::Mat transposed(size.width, size.height, CV_8U);
-  std::uint8_t* out = transposed.data;
-  std::uint8_t value = 0;
-  for (const std::uint32_t run : runs) {
-    std::fill_n(out, run, value);
-    out += run;
-    value = static_cast<std::uint8_t>(255 - value);
-  }
-  return cv::Mat(transposed.t());
+  cv::Point low(size.width, size.height), high(0, 0);
+  each_stretch(runs, size.height, [&](int column, int first, int end) {
+    low = {std::min(low.x, column), std::min(low.y, first)};
+    high = {std::max(high.x, column + 1), std::max(high.y, end)};
+  });
+  BoxedMask mask;
+  if (high.x == 0) return mask;
+  mask.box_px = cv::Rect(low, high);
+  mask.pixels = cv::Mat::zeros(mask.box_px.size(), CV_8U);
+  each_stretch(runs, size.height, [&](int column, int first, int end) {
+    for (int row = first; row < end; ++row) {
+      mask.pixels.at<std::uint8_t>(row - low.y, column - low.x) = 255;
+    }
+  });
+  return mask;
 }
 
 std::string compress_run_lengths(const RunLengths& runs) {
@@ -84,4 +113,4 @@ Result<RunLengths> decompress_run_lengths(std::string_view text) {
   return runs;
 }
 
-}  // namespace furrow::vision
+}  // namespace furrow::annotation

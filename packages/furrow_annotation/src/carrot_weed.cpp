@@ -1,10 +1,10 @@
-#include "furrow_vision/dataset_carrot_weed.hpp"
+#include "furrow_annotation/carrot_weed.hpp"
 
 #include <opencv2/imgproc.hpp>
 
-#include "dataset_common.hpp"
+#include "folder_listing.hpp"
 
-namespace furrow::vision {
+namespace furrow::annotation {
 namespace {
 
 void add_components(const cv::Mat& labels, int label, SubClassKind kind, int min_area_px,
@@ -26,8 +26,9 @@ void add_components(const cv::Mat& labels, int label, SubClassKind kind, int min
 
 }  // namespace
 
-Result<Dataset> read_carrot_weed(const std::filesystem::path& folder, int min_area_px) {
-  const auto masks = list_files(folder / "plant_masks", {".png"});
+Result<Dataset> read_carrot_weed(const std::filesystem::path& folder, const MaskReader& read_mask,
+                                 int min_area_px) {
+  const auto masks = list_files(folder / "plant_masks", ".png");
   if (!masks) return masks.error();
   if (masks->empty()) {
     return Error{ErrorCode::kNotFound, (folder / "plant_masks").string() + ": holds no masks"};
@@ -60,4 +61,4 @@ Result<Dataset> read_carrot_weed(const std::filesystem::path& folder, int min_ar
   return dataset;
 }
 
-}  // namespace furrow::vision
+}  // namespace furrow::annotation
