@@ -5,16 +5,10 @@
 #include <vector>
 
 #include "furrow_core/error.hpp"
+#include "furrow_core/statistics.hpp"
 
 namespace furrow::actuation {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2.0;
-}
 
 /// Pairs of like speed say nothing about the slope.
 double slope_over_speed(std::span<const LandingOffset> sprays) {
@@ -75,12 +69,7 @@ std::optional<double> distance_quantile_m(std::span<const LandingOffset> sprays,
   if (sprays.empty()) return std::nullopt;
   std::vector<double> distances;
   for (const LandingOffset& spray : sprays) distances.push_back(spray.offset_m.norm());
-  std::ranges::sort(distances);
-  const double place = p * static_cast<double>(distances.size() - 1);
-  const auto low = static_cast<std::size_t>(place);
-  const std::size_t high = std::min(low + 1, distances.size() - 1);
-  const double share = place - static_cast<double>(low);
-  return (1.0 - share) * distances[low] + share * distances[high];
+  return quantile(std::move(distances), p);
 }
 
 }  // namespace furrow::actuation

@@ -15,6 +15,7 @@
 
 #include "child_process.hpp"
 #include "furrow_core/file.hpp"
+#include "furrow_core/statistics.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/builtin_interfaces.h"
 #include "furrow_msgs/furrow_msgs.h"

@@ -176,16 +176,6 @@ Time steady_now() {
   return Time::from_nanoseconds(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(values.size())) - 1.0);
-  const auto nth = values.begin() + std::clamp<std::ptrdiff_t>(
-                                        at, 0, static_cast<std::ptrdiff_t>(values.size()) - 1);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
-
 std::vector<std::byte> image_payload(std::size_t bytes) {
   const auto image = make_image(bytes);
   const msgs::MessageType& type = *topics::CameraImage::topic().type;

@@ -56,8 +56,6 @@ class Latencies {
 
 /// The machine's clock that never jumps, the same in all its processes.
 [[nodiscard]] Time steady_now();
-/// Of sorted or unsorted values; 0 when there are none.
-[[nodiscard]] double quantile(std::vector<double> values, double share);
 
 /// The CDR form of an image with so many bytes of pixels, to be stamped by stamp_payload().
 [[nodiscard]] std::vector<std::byte> image_payload(std::size_t bytes);

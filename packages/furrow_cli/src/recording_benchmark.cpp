@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "furrow_core/statistics.hpp"
 #include "furrow_msgs/topics.hpp"
 #include "furrow_recording/dds_player.hpp"
 #include "furrow_recording/mcap_reader.hpp"

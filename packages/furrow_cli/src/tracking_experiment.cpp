@@ -7,6 +7,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "furrow_core/statistics.hpp"
 #include "graph_setup.hpp"
 #include "share.hpp"
 
@@ -70,11 +71,6 @@ class Pool {
  private:
   static void append(std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
-  }
-  static double quantile(std::vector<double> values, double share) {
-    if (values.empty()) return NAN;
-    std::ranges::sort(values);
-    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   }
   static double rms(const std::vector<double>& values) {
     double sum = 0.0;

@@ -163,14 +163,7 @@ rtps::GuidPrefix_t discovery_server_prefix(std::uint8_t id) {
 }
 
 fdds::DomainParticipantQos participant_qos(const DdsParameters& parameters) {
-  DdsParameters copy = parameters;
-  ParameterLister lister;
-  copy.visit(lister);
-  std::vector<GivenParameter> given;
-  for (const DeclaredParameter& declared : lister.declared()) {
-    given.push_back({declared.info.name, declared.default_value, {}});
-  }
-  check_parameters(lister.declared(), given);
+  validate_parameters(parameters);
 
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(parameters.process_name);

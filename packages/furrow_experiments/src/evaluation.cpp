@@ -6,7 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "furrow_experiments/parallel.hpp"
+#include "furrow_core/parallel.hpp"
+#include "furrow_core/statistics.hpp"
 #include "furrow_experiments/statistics.hpp"
 #include "furrow_planning/route_planner.hpp"
 
@@ -100,23 +101,11 @@ class Unit {
   const std::function<void()>& done_;
 };
 
-/// A struct that was filled in code, not loaded: its own values as if they had been given.
-template <class Parameters>
-void check_ranges(Parameters parameters) {
-  ParameterLister lister;
-  parameters.visit(lister);
-  std::vector<GivenParameter> given;
-  for (const DeclaredParameter& declared : lister.declared()) {
-    given.push_back({declared.info.name, declared.default_value, {}});
-  }
-  check_parameters(lister.declared(), given);
-}
-
 /// Bad parameters show here, before anything is driven.
 void check(const std::vector<Variant>& variants, const SamplingParameters& sampling) {
-  check_ranges(sampling);
+  validate_parameters(sampling);
   for (const Variant& variant : variants) {
-    check_ranges(variant.setup);
+    validate_parameters(variant.setup);
     (void)planning::make_observation_view(variant.planner, axis_specs(variant.setup));
   }
 }

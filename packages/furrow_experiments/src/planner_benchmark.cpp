@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "furrow_core/statistics.hpp"
 #include "furrow_experiments/drive.hpp"
 #include "furrow_experiments/statistics.hpp"
 #include "furrow_planning/route_planner.hpp"

@@ -42,16 +42,4 @@ double ci95_half_width(std::span<const double> values) {
          std::sqrt(static_cast<double>(values.size()));
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
-  std::nth_element(values.begin(), nth, values.end());
-  const double low = *nth;
-  if (below + 1 == values.size()) return low;
-  const double high = *std::min_element(nth + 1, values.end());
-  return low + (place - static_cast<double>(below)) * (high - low);
-}
-
 }  // namespace furrow::experiments

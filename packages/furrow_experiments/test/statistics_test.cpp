@@ -41,31 +41,5 @@ TEST(Statistics, ConfidenceIntervalOfTwoValues) {
   EXPECT_NEAR(ci95_half_width(values), 12.7062 * std::sqrt(2.0) / std::sqrt(2.0), 1e-3);
 }
 
-TEST(Statistics, QuantileInterpolates) {
-  EXPECT_DOUBLE_EQ(quantile({}, 0.5), 0.0);
-  EXPECT_DOUBLE_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.5);
-  EXPECT_DOUBLE_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
-  EXPECT_DOUBLE_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.0), 1.0);
-}
-
-TEST(ParallelFor, CallsEachIndexOnce) {
-  for (const std::size_t threads : {0U, 1U, 3U, 50U}) {
-    std::vector<std::atomic<int>> calls(20);
-    parallel_for(calls.size(), threads, [&](std::size_t i) { ++calls[i]; });
-    for (const auto& count : calls) EXPECT_EQ(count, 1);
-  }
-  parallel_for(0, 2, [](std::size_t) { FAIL(); });
-}
-
-TEST(ParallelFor, HandsOnWhatWasThrown) {
-  for (const std::size_t threads : {1U, 3U}) {
-    EXPECT_THROW(parallel_for(8, threads,
-                              [](std::size_t i) {
-                                if (i == 5) throw std::runtime_error("five");
-                              }),
-                 std::runtime_error);
-  }
-}
-
 }  // namespace
 }  // namespace furrow::experiments

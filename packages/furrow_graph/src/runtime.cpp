@@ -6,6 +6,7 @@
 
 #include "diagnostics.hpp"
 #include "executor.hpp"
+#include "furrow_core/hash.hpp"
 #include "furrow_graph/graph_check.hpp"
 #include "wave_exchange.hpp"
 
@@ -165,7 +166,7 @@ struct Runtime::Impl {
 
 namespace {
 
-/// FNV-1a over what must be the same in all processes of a lock-step. Paths may differ by host.
+/// Of what must be the same in all processes of a lock-step. Paths may differ by host.
 std::uint64_t digest_of(const GraphSpec& graph, const std::vector<Connection>& connections,
                         const RuntimeOptions& options) {
   std::string text = std::to_string(options.seed) + "\n";
@@ -186,9 +187,7 @@ std::uint64_t digest_of(const GraphSpec& graph, const std::vector<Connection>& c
     for (const std::string& component : process.components) text += " " + component;
     text += "\n";
   }
-  std::uint64_t hash = 14695981039346656037U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return hash;
+  return fnv1a_64(text);
 }
 
 }  // namespace

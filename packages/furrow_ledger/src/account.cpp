@@ -5,7 +5,6 @@
 
 #include "association.hpp"
 #include "furrow_ledger/ledger.hpp"
-#include "point_grid.hpp"
 #include "summary.hpp"
 #include "validation.hpp"
 
@@ -73,7 +72,7 @@ class Accountant {
       stems.push_back(plant.p_F_m);
       ids.push_back(plant.id);
     }
-    const PointGrid grid(stems, cell_m);
+    const PointGrid<Eigen::Vector2d> grid(stems, cell_m);
     association_ = associate(ids, grid, tracks_, parameters_.association_radius_m);
     index_decisions();
     apply_sprays(grid);
@@ -102,7 +101,7 @@ class Accountant {
     best_m = distance_m;
   }
 
-  void apply_sprays(const PointGrid& grid) {
+  void apply_sprays(const PointGrid<Eigen::Vector2d>& grid) {
     sprayed_.resize(plants_.size());
     for (std::size_t s = 0; s < sprays_.size(); ++s) {
       const Spray& spray = sprays_[s];

@@ -17,8 +17,9 @@ struct Candidate {
 
 }  // namespace
 
-Association associate(const std::vector<std::int64_t>& plant_ids, const PointGrid& grid,
-                      const std::vector<TrackView>& tracks, double radius_m) {
+Association associate(const std::vector<std::int64_t>& plant_ids,
+                      const PointGrid<Eigen::Vector2d>& grid, const std::vector<TrackView>& tracks,
+                      double radius_m) {
   Association result;
   result.track_of_plant.assign(plant_ids.size(), kNobody);
   result.distance_m.assign(plant_ids.size(), 0.0);

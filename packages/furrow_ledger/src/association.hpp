@@ -1,10 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "furrow_core/point_grid.hpp"
 #include "furrow_ledger/run_record.hpp"
-#include "point_grid.hpp"
 
 namespace furrow::ledger {
 
@@ -21,7 +22,7 @@ struct Association {
 
 /// Pairs sorted tracks and plants as account() describes. `grid` holds the plants' stems.
 [[nodiscard]] Association associate(const std::vector<std::int64_t>& plant_ids,
-                                    const PointGrid& grid, const std::vector<TrackView>& tracks,
-                                    double radius_m);
+                                    const PointGrid<Eigen::Vector2d>& grid,
+                                    const std::vector<TrackView>& tracks, double radius_m);
 
 }  // namespace furrow::ledger

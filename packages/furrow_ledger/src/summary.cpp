@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "furrow_core/statistics.hpp"
+
 namespace furrow::ledger {
 namespace {
 
@@ -23,13 +25,6 @@ Json rounded(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-double quantile(const std::vector<double>& sorted, double fraction) {
-  const double rank = fraction * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], rank - static_cast<double>(below));
-}
 
 void count_rows(const std::vector<LedgerRow>& rows, Summary& summary) {
   std::int64_t vision = 0;
@@ -77,15 +72,15 @@ void take_run_info(const RunInfo& info, Summary& summary) {
 void set_errors(const std::vector<double>& placement_mm, const std::vector<double>& aim_mm,
                 Summary& summary) {
   if (!placement_mm.empty()) {
-    summary.placement_error_p50_mm = quantile(placement_mm, 0.50);
-    summary.placement_error_p95_mm = quantile(placement_mm, 0.95);
+    summary.placement_error_p50_mm = quantile_of_sorted(placement_mm, 0.50);
+    summary.placement_error_p95_mm = quantile_of_sorted(placement_mm, 0.95);
     for (int i = 0; i <= 10; ++i) {
-      summary.placement_error_deciles_mm.push_back(quantile(placement_mm, i / 10.0));
+      summary.placement_error_deciles_mm.push_back(quantile_of_sorted(placement_mm, i / 10.0));
     }
   }
   if (!aim_mm.empty()) {
-    summary.aim_error_p50_mm = quantile(aim_mm, 0.50);
-    summary.aim_error_p95_mm = quantile(aim_mm, 0.95);
+    summary.aim_error_p50_mm = quantile_of_sorted(aim_mm, 0.50);
+    summary.aim_error_p95_mm = quantile_of_sorted(aim_mm, 0.95);
   }
 }
 

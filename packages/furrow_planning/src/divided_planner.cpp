@@ -1,11 +1,10 @@
 #include "divided_planner.hpp"
 
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "furrow_core/error.hpp"
+#include "furrow_core/parallel.hpp"
 
 namespace furrow::planning {
 namespace {
@@ -61,28 +60,11 @@ Status DividedPlanner::plan(const PlanningProblem& problem, Plan& plan) {
 }
 
 void DividedPlanner::route_axes() {
-  const auto route = [this](std::size_t a) {
-    routers_[a]->route(prepared_, prepared_.starts[a], members_[a], chains_[a]);
-  };
-  const std::size_t axes = members_.size();
-  const std::size_t threads = std::min(axes, static_cast<std::size_t>(parameters_.threads));
-  if (threads <= 1) {
-    for (std::size_t a = 0; a < axes; ++a) {
-      route(a);
-    }
-    return;
-  }
   // Each axis has its own router and chain: the threads share nothing that they write.
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::jthread> workers;
-  workers.reserve(threads);
-  for (std::size_t i = 0; i < threads; ++i) {
-    workers.emplace_back([&] {
-      for (std::size_t a = next++; a < axes; a = next++) {
-        route(a);
-      }
-    });
-  }
+  parallel_for(members_.size(), static_cast<std::size_t>(parameters_.threads),
+               [this](std::size_t a) {
+                 routers_[a]->route(prepared_, prepared_.starts[a], members_[a], chains_[a]);
+               });
 }
 
 Status JointGreedyPlanner::plan(const PlanningProblem& problem, Plan& plan) {

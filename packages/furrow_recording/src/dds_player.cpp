@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "furrow_core/statistics.hpp"
 #include "furrow_msgs/type_names.hpp"
 
 namespace furrow::recording {
@@ -135,10 +136,7 @@ class DdsPlayer::Impl {
     status.paused = player_.paused();
     status.finished = finished_;
     if (!lateness_s_.empty()) {
-      std::vector<double> sorted = lateness_s_;
-      const auto p99 = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) * 99 / 100);
-      std::nth_element(sorted.begin(), p99, sorted.end());
-      status.lateness_p99_s = *p99;
+      status.lateness_p99_s = quantile(lateness_s_, 0.99);
     }
     return status;
   }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "furrow_core/parallel.hpp"
 #include "furrow_core/random.hpp"
-#include "parallel.hpp"
 
 namespace furrow::simulation {
 namespace {
@@ -128,7 +128,7 @@ void CameraEffects::apply(cv::Mat& bgr, cv::Mat& depth_m, std::uint64_t frame_in
   const bool blurs = lens_kernel_.size() > 1 || motion_kernel_.size() > 1;
   if (blurs || parameters_.vignetting > 0.0 || parameters_.image_noise > 0.0) {
     cv::Mat target(bgr.size(), CV_8UC3);
-    for_bands(bgr.rows, threads, [&](int first, int last) {
+    parallel_bands(bgr.rows, threads, [&](int first, int last) {
       filter_rows(bgr, target, frame_index, motion_along_columns, first, last);
     });
     bgr = target;
@@ -136,7 +136,7 @@ void CameraEffects::apply(cv::Mat& bgr, cv::Mat& depth_m, std::uint64_t frame_in
   if (parameters_.depth_noise_m > 0.0 || parameters_.depth_hole_share > 0.0 ||
       parameters_.depth_edge_step_m > 0.0) {
     cv::Mat target(depth_m.size(), CV_32FC1);
-    for_bands(depth_m.rows, threads, [&](int first, int last) {
+    parallel_bands(depth_m.rows, threads, [&](int first, int last) {
       degrade_depth(depth_m, target, frame_index, first, last);
     });
     depth_m = target;

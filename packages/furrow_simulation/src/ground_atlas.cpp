@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "parallel.hpp"
+#include "furrow_core/parallel.hpp"
 
 namespace furrow::simulation {
 namespace {
@@ -63,7 +63,7 @@ void GroundAtlas::prepare(const Window& window, const Casters& casters, int thre
       casters(x, y, jobs.back().casters);
     }
   }
-  for_bands(static_cast<int>(jobs.size()), threads, [&](int first, int end) {
+  parallel_bands(static_cast<int>(jobs.size()), threads, [&](int first, int end) {
     GroundBlock block;
     for (int i = first; i < end; ++i) {
       const Job& job = jobs[static_cast<std::size_t>(i)];

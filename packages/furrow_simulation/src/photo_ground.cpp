@@ -8,8 +8,8 @@
 
 #include "check.hpp"
 #include "furrow_core/error.hpp"
+#include "furrow_core/parallel.hpp"
 #include "furrow_core/random.hpp"
-#include "parallel.hpp"
 #include "view.hpp"
 
 namespace furrow::simulation {
@@ -232,7 +232,7 @@ Frame PhotoGround::render(const geometry::PinholeCamera& camera, const Eigen::Is
   const double left_m = 0.5 * columns_ * cell_width_m_;
   const double per_length = 1.0 / cell_length_m_;
   const double per_width = 1.0 / cell_width_m_;
-  for_bands(intrinsics.height_px, threads, [&](int first, int end) {
+  parallel_bands(intrinsics.height_px, threads, [&](int first, int end) {
     for (int v = first; v < end; ++v) {
       auto* bgr = frame.bgr.ptr<std::uint8_t>(v);
       auto* depth = frame.depth_m.ptr<float>(v);

@@ -6,9 +6,9 @@
 #include <mutex>
 
 #include "check.hpp"
+#include "furrow_core/parallel.hpp"
 #include "furrow_core/random.hpp"
 #include "ground_atlas.hpp"
-#include "parallel.hpp"
 #include "plant_cache.hpp"
 #include "plant_raster.hpp"
 #include "view.hpp"
@@ -120,7 +120,7 @@ class Renderer::Implementation {
     }
 
     std::mutex merging;
-    for_bands(intrinsics.height_px, threads, [&](int first, int end) {
+    parallel_bands(intrinsics.height_px, threads, [&](int first, int end) {
       std::vector<std::int64_t> visible(placed.size(), 0);
       for (std::size_t i = 0; i < placed.size(); ++i) {
         draw_plant(placed[i], static_cast<std::int32_t>(i), texture_, shadow, frame, first, end);

@@ -11,14 +11,8 @@ namespace {
 
 constexpr Duration kGrid = Duration::milliseconds(1);
 
-void check(RobotMotionParameters parameters) {
-  ParameterLister lister;
-  parameters.visit(lister);
-  std::vector<GivenParameter> given;
-  for (const DeclaredParameter& declared : lister.declared()) {
-    given.push_back({declared.info.name, declared.default_value, {"robot motion", 0}});
-  }
-  check_parameters(lister.declared(), given);
+void check(const RobotMotionParameters& parameters) {
+  validate_parameters(parameters, {"robot motion", 0});
   if (parameters.profile_time_s.size() != parameters.profile_speed_mps.size()) {
     throw ConfigError(
         "robot motion: profile_time_s and profile_speed_mps must be of the same length");

@@ -133,12 +133,13 @@ std::span<const std::int32_t> Association::match(Time now,
   pairs_.clear();
   grid_.build(positions_, std::max(greatest_reach_m_, 1e-3));
   for (std::size_t o = 0; o < observations.size(); ++o) {
-    grid_.for_each_near(
-        observations[o].p_F, greatest_reach_m_, [&](std::int32_t candidate, double distance_m) {
+    grid_.for_each_within(
+        observations[o].p_F, greatest_reach_m_, [&](std::size_t candidate, double distance_m) {
           const double pair_cost = cost(observations[o], tracks[candidates_[candidate]],
                                         reach_m_[candidate], distance_m);
           if (pair_cost <= unmatched_cost_) {
-            pairs_.push_back({static_cast<std::int32_t>(o), candidate, pair_cost});
+            pairs_.push_back(
+                {static_cast<std::int32_t>(o), static_cast<std::int32_t>(candidate), pair_cost});
           }
         });
   }

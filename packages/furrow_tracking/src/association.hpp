@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "furrow_core/point_grid.hpp"
 #include "furrow_tracking/assignment.hpp"
 #include "furrow_tracking/tracker.hpp"
-#include "point_grid.hpp"
 
 namespace furrow::tracking {
 
@@ -49,7 +49,7 @@ class Association {
   Method method_;
   double unmatched_cost_;
   SparseAssignment assignment_;
-  PointGrid grid_;
+  PointGrid<Eigen::Vector2d> grid_;
   std::vector<std::int32_t> candidates_;    // indices into tracks
   std::vector<Eigen::Vector2d> positions_;  // of the candidates
   std::vector<double> reach_m_;             // of the candidates

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "furrow_core/statistics.hpp"
+
 namespace furrow::tracking {
 namespace {
 
@@ -62,9 +64,7 @@ Result<double> depth_near(const DepthImage& depth, const Eigen::Vector2d& pixel,
     }
   }
   if (values_m.empty()) return Error{ErrorCode::kNotFound, "no depth near the pixel"};
-  const auto middle = values_m.begin() + static_cast<std::ptrdiff_t>(values_m.size() / 2);
-  std::nth_element(values_m.begin(), middle, values_m.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(median_element(std::span(values_m)));
 }
 
 Result<GroundFootprint> reproject_mask(const geometry::PinholeCamera& camera,

@@ -8,22 +8,16 @@
 
 #include "association.hpp"
 #include "furrow_core/error.hpp"
+#include "furrow_core/point_grid.hpp"
 #include "fusion.hpp"
-#include "point_grid.hpp"
 
 namespace furrow::tracking {
 namespace {
 
 constexpr std::int32_t kNoTrack = SparseAssignment::kUnmatched;
 
-void check(TrackerParameters& parameters) {
-  ParameterLister lister;
-  parameters.visit(lister);
-  std::vector<GivenParameter> given;
-  for (const DeclaredParameter& declared : lister.declared()) {
-    given.push_back({declared.info.name, declared.default_value, {}});
-  }
-  check_parameters(lister.declared(), given);
+void check(const TrackerParameters& parameters) {
+  validate_parameters(parameters);
   if (parameters.min_radius_m > parameters.max_radius_m) {
     throw ConfigError("min_radius_m is greater than max_radius_m");
   }
@@ -80,8 +74,8 @@ class Tracker::Impl {
   std::vector<Eigen::Vector2d> seen_positions_;  // of tracks matched in this view
   std::vector<std::int32_t> seen_tracks_;
   std::vector<std::pair<double, std::int32_t>> by_distance_;
-  PointGrid observation_grid_;
-  PointGrid track_grid_;
+  PointGrid<Eigen::Vector2d> observation_grid_;
+  PointGrid<Eigen::Vector2d> track_grid_;
 };
 
 ViewFault Tracker::Impl::fault_of(const View& view) const {
@@ -196,8 +190,8 @@ bool Tracker::Impl::repeats_a_plant(const PreparedObservation& observation) cons
   bool repeats = false;
   const double reach_m = parameters_.duplicate_ratio * observation.source->radius_m;
   if (reach_m <= 0.0) return false;
-  observation_grid_.for_each_near(
-      observation.p_F, reach_m, [&](std::int32_t other, double distance_m) {
+  observation_grid_.for_each_within(
+      observation.p_F, reach_m, [&](std::size_t other, double distance_m) {
         repeats = repeats ||
                   (track_of_[other] != kNoTrack &&
                    distance_m <= parameters_.duplicate_ratio * prepared_[other].source->radius_m);
@@ -262,7 +256,7 @@ std::int32_t Tracker::Impl::seen_twin_of(const Track& track, Time now) const {
   const double spread =
       largest_sigma_m(predicted_covariance(track, now, parameters_.drift_m_per_sqrt_s));
   const double reach_m = parameters_.max_radius_m;
-  track_grid_.for_each_near(track.p_F_m, reach_m, [&](std::int32_t seen, double distance_m) {
+  track_grid_.for_each_within(track.p_F_m, reach_m, [&](std::size_t seen, double distance_m) {
     const Track& other = tracks_[seen_tracks_[seen]];
     // Two tracks that were seen side by side are two plants; one that was missed only now may
     // have been seen beside the other.

@@ -20,7 +20,4 @@ struct MeanAndSpread {
 /// the expansion of Abramowitz and Stegun (1964), 26.7.5, to within 0.01. @pre degrees >= 1.
 [[nodiscard]] double student_t_975(std::size_t degrees);
 
-/// The value at `share` in [0, 1] of the sorted values, interpolated; 0 of nothing.
-[[nodiscard]] double quantile(std::vector<double> values, double share);
-
 }  // namespace furrow::experiments
