@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "csv_cells.hpp"
+#include "furrow_core/utf8.hpp"
 #include "numbers.hpp"
 
 namespace furrow::field {
@@ -27,36 +29,9 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-/// One line's cells; nothing when a quote does not close or text follows it.
-std::optional<std::vector<std::string>> split(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool in_quotes = false;
-  bool closed = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (in_quotes) {
-      if (c != '"') {
-        cells.back() += c;
-      } else if (i + 1 < line.size() && line[i + 1] == '"') {
-        cells.back() += '"';
-        ++i;
-      } else {
-        in_quotes = false;
-        closed = true;
-      }
-    } else if (c == ',') {
-      cells.emplace_back();
-      closed = false;
-    } else if (c == '"' && cells.back().empty() && !closed) {
-      in_quotes = true;
-    } else if (c == '"' || closed) {
-      return std::nullopt;
-    } else {
-      cells.back() += c;
-    }
-  }
-  if (in_quotes) return std::nullopt;
-  return cells;
+/// Nothing but separators, as spreadsheets write an empty row.
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(",; \t") == std::string_view::npos;
 }
 
 class CsvReader {
@@ -64,11 +39,15 @@ class CsvReader {
   CsvReader(std::string_view text, std::string_view origin) : text_(text), origin_(origin) {}
 
   Result<FieldModel> read() {
+    if (const std::string fault = take_byte_order_mark(text_); !fault.empty()) {
+      return Error{ErrorCode::kParse, origin_ + ":" + fault};
+    }
     std::string_view line;
     bool have_header = false;
     while (next_line(line)) {
       Status status;
-      if (line.empty()) continue;
+      if (is_blank(line)) continue;
+      if (!have_header && line.starts_with("sep=")) continue;  // for spreadsheets; the header tells
       if (!have_header && line.front() == '#') {
         status = read_comment(line);
       } else if (!have_header) {
@@ -105,6 +84,8 @@ class CsvReader {
   }
 
   Status read_comment(std::string_view line) {
+    // A spreadsheet fills the line up with separators.
+    line = line.substr(0, line.find_last_not_of(",;\t") + 1);
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos || line.size() < 2) return {};
     const std::string_view key = line.substr(2, colon > 2 ? colon - 2 : 0);
@@ -133,7 +114,8 @@ class CsvReader {
   }
 
   Status read_header(std::string_view line) {
-    const auto cells = split(line);
+    separator_ = csv_separator(line);
+    const auto cells = csv_cells(line, separator_);
     if (!cells) return fail("header", "a quote does not close");
     for (const std::string& cell : *cells) {
       const auto column = std::find(kColumns.begin(), kColumns.end(), cell);
@@ -154,21 +136,36 @@ class CsvReader {
 
   Status read_plant(std::string_view line) {
     if (field_.plants.size() >= kMaxPlants) return fail("file", "more than 1000000 plants");
-    const auto cells = split(line);
+    const auto cells = csv_cells(line, separator_);
     if (!cells) return fail("line", "a quote does not close or text follows it");
     if (cells->size() != order_.size()) {
       return fail("line", std::to_string(cells->size()) + " cells where the header has " +
-                              std::to_string(order_.size()));
+                              std::to_string(order_.size()) + more_cells_hint(cells->size()));
     }
     Plant plant;
     plant.id = static_cast<std::int64_t>(field_.plants.size());
     for (std::size_t i = 0; i < cells->size(); ++i) {
-      if (!assign(plant, order_[i], (*cells)[i])) {
+      std::string cell(trimmed((*cells)[i]));
+      if (is_number(order_[i]) && separator_ != ',') use_decimal_point(cell);
+      if (!assign(plant, order_[i], cell)) {
         return fail(kColumns[order_[i]], "'" + (*cells)[i] + "' is no value for this column");
       }
     }
     field_.plants.push_back(std::move(plant));
     return {};
+  }
+
+  [[nodiscard]] std::string more_cells_hint(std::size_t cells) const {
+    if (separator_ != ',' || cells < order_.size()) return {};
+    return ": where the comma is the decimal mark, separate the cells by ';'";
+  }
+
+  static bool is_number(std::size_t column) { return column != 1 && column != 2; }
+
+  /// "0,25" becomes "0.25"; a cell with a point, or several commas, stays as it is.
+  static void use_decimal_point(std::string& cell) {
+    if (cell.find('.') != std::string::npos) return;
+    if (std::count(cell.begin(), cell.end(), ',') == 1) cell[cell.find(',')] = '.';
   }
 
   template <class Number, class Target>
@@ -220,6 +217,7 @@ class CsvReader {
   std::string_view text_;
   std::string origin_;
   int line_ = 0;
+  char separator_ = ',';
   FieldModel field_;
   std::optional<double> length_m_;
   std::optional<double> width_m_;
@@ -249,6 +247,7 @@ Result<std::string> to_csv(const FieldModel& field) {
             exact_text(plant.area_mm2) + ',' + std::to_string(plant.leaves) + ',' +
             exact_text(plant.heading_rad) + '\n';
   }
+  if (!is_utf8(text)) return Error{ErrorCode::kInvalidArgument, "a text is not UTF-8"};
   return text;
 }
 

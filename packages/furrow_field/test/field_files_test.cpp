@@ -112,6 +112,31 @@ TEST(FieldCsv, ErrorsNameFileLineAndColumn) {
   expect_error(read_csv(header + "0,weed,a,-1,0\n"), {"plant 0", "outside"});
 }
 
+TEST(FieldCsv, ReadsWhatSpreadsheetsWrite) {
+  const std::string plants[] = {
+      "\xEF\xBB\xBFkind,x_m,y_m\r\ncrop,1.5,0.0\r\nweed,0.5,0.25\r\n",  // CSV UTF-8
+      "kind;x_m;y_m\r\ncrop;1,5;0\r\nweed;0,5;0,25\r\n",                // decimal commas
+      "\xEF\xBB\xBFsep=;\r\nkind;x_m;y_m\r\ncrop;1.5;0\r\nweed;0.5;0.25\r\n;;\r\n",
+      "kind\tx_m\ty_m\ncrop\t1,5\t0,0\nweed\t0.5\t0,25\n",
+      "# name: n,,\n# width_m: 0.5,,\nkind,x_m,y_m\ncrop, 1.5 ,0\nweed,0.5,0.25\n,,\n"};
+  for (const std::string& text : plants) {
+    const Result<FieldModel> field = read_csv(text);
+    ASSERT_TRUE(field.ok()) << text << field.error().message;
+    ASSERT_EQ(field->plants.size(), 2u) << text;
+    EXPECT_EQ(field->plants[0].p_F_m, Eigen::Vector2d(0.5, 0.25));
+    EXPECT_EQ(field->plants[1].p_F_m, Eigen::Vector2d(1.5, 0.0));
+    EXPECT_EQ(field->width_m, 0.5);
+  }
+}
+
+TEST(FieldCsv, TellsWhatASpreadsheetMustDo) {
+  expect_error(read_csv("kind,species,x_m,y_m\nweed,Kamille \xE9,0.3,0.1\n"),
+               {"field.csv:2:", "0xE9", "CSV UTF-8"});
+  expect_error(read_csv(std::string("\xFF\xFEk\0i\0", 6)), {"field.csv:1:", "UTF-16"});
+  expect_error(read_csv("kind,x_m,y_m\nweed,0,3,0,1\n"), {":2: line", "5 cells", "decimal mark"});
+  expect_error(read_csv("kind;x_m;y_m\nweed;1.000,5;0\n"), {":2: x_m: '1.000,5'"});
+}
+
 TEST(FieldCsv, SurvivesDamage) {
   survive_damage(*to_csv(random_field(3, 12)), read_csv, "field.csv");
 }
@@ -235,6 +260,7 @@ TEST(FieldFiles, RefuseToWriteAnInvalidField) {
   EXPECT_FALSE(to_geojson(field, GeoOrigin{90.1, 0.0, 0.0}).ok());
   field.plants[0].species = "\xff";
   EXPECT_FALSE(to_geojson(field).ok());
+  EXPECT_FALSE(to_csv(field).ok());
   field.plants[0].p_F_m.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(to_csv(field).ok());
   EXPECT_FALSE(to_geojson(field).ok());

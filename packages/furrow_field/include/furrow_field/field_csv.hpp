@@ -14,7 +14,10 @@ namespace furrow::field {
 [[nodiscard]] Result<std::string> to_csv(const FieldModel& field);
 
 /// Columns in any order; kind, x_m and y_m are required. What else is missing takes Plant's default
-/// (ids: counted from 0); a missing length or width is the least that holds the plants. Errors
+/// (ids: counted from 0); a missing length or width is the least that holds the plants.
+///
+/// Reads what spreadsheets write: a byte order mark, a line "sep=;", ';' or tabs between the cells,
+/// then also a comma as decimal mark, and rows of separators alone. The text is UTF-8. Errors
 /// (kParse, kOutOfRange) read "origin:line: column: what is wrong".
 [[nodiscard]] Result<FieldModel> from_csv(std::string_view text, std::string_view origin);
 
