@@ -74,6 +74,7 @@ CMAKE_NAMES = {
     "libbenchmark-dev": "benchmark",
     "libcli11-dev": "CLI11",
     "libconsole-bridge-dev": "console_bridge",
+    "libdeflate-dev": "libdeflate",
     "libfastcdr-dev": "fastcdr",
     "libfastrtps-dev": "fastrtps",
     "liblemon-dev": "LEMON",
