@@ -14,8 +14,8 @@ struct Segmentation {
 };
 
 /// The mask of an annotation: of its "segmentation", else of its "bbox". Throws Malformed. With a
-/// report, polygons of fewer than three corners beside good ones are left out and counted in it;
-/// without one (strict) they are malformed.
+/// report, polygons of fewer than three corners are skipped and counted when the annotation has
+/// good ones too. Without a report (strict) they are malformed.
 [[nodiscard]] Segmentation read_segmentation(const JsonNode& annotation, cv::Size size,
                                              ReadReport* report);
 

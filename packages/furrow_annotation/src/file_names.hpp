@@ -7,7 +7,7 @@
 
 namespace furrow::annotation {
 
-/// `path` as seen from `folder`, where it lies under it; else as it is.
+/// `path` relative to `folder` when it is below it; else unchanged.
 [[nodiscard]] std::string relative_to(const std::filesystem::path& path,
                                       const std::filesystem::path& folder);
 

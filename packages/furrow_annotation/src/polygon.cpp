@@ -43,7 +43,7 @@ class Crossings {
     at_.push_back(static_cast<std::uint32_t>(size_.area()));
     RunLengths runs;
     std::uint32_t last = 0;
-    bool extends = false;  // an odd number of crossings at one place: the run before goes on
+    bool extends = false;  // two crossings at one place: the previous run continues
     for (const std::uint32_t crossing : at_) {
       const std::uint32_t length = crossing - last;
       last = crossing;

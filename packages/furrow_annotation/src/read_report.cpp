@@ -27,7 +27,7 @@ std::vector<std::string> describe(const ReadReport& report, const std::string& f
                     std::to_string(report.annotations) + " annotations " + text);
   };
   for (const SkippedAnnotations& skipped : report.skipped) {
-    add(skipped.count, "left out: " + skipped.reason + " (first: " + skipped.first_entry + ")");
+    add(skipped.count, "skipped: " + skipped.reason + " (first: " + skipped.first_entry + ")");
   }
   if (report.box_only > 0) add(report.box_only, "have a box only: the box is taken as the mask");
   if (report.without_stem_keypoint > 0) {

@@ -183,7 +183,7 @@ TEST_F(CocoTolerance, TheReportNamesCountReasonAndFirstEntry) {
   const auto lines = describe(dataset->report, "set.json");
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0],
-            "set.json: 2 of 3 annotations left out: polygon of fewer than three corners (first: "
+            "set.json: 2 of 3 annotations skipped: polygon of fewer than three corners (first: "
             "annotations[0].segmentation[0])");
   EXPECT_EQ(lines[1], "set.json: 1 of 3 annotations have a box only: the box is taken as the mask");
   EXPECT_TRUE(describe(ReadReport{}, "set.json").empty());

@@ -78,7 +78,7 @@ field::FieldModel import_images(const std::string& file, const ImportOptions& op
     const std::string message =
         file + ": " + std::to_string(laid.outside) + " plants with a stem outside their image";
     if (options.strict) throw ConfigError(message);
-    notes.push_back(message + " left out");
+    notes.push_back(message + " skipped");
   }
   return std::move(laid.field);
 }

@@ -22,12 +22,12 @@ struct ImportOptions {
   field::LayoutParameters layout;  ///< its gap also stands between fields
   std::map<std::string, CategoryMeaning> categories;
   std::optional<field::GeoOrigin> origin;
-  bool strict = false;  ///< a bad annotation refuses its file, and is not left out
+  bool strict = false;  ///< refuse a file with a bad annotation instead of skipping it
 };
 
 struct ImportedField {
   field::FieldModel field;
-  std::vector<std::string> notes;  ///< what was left out or assumed, a line each
+  std::vector<std::string> notes;  ///< skipped annotations and assumptions, a line each
 };
 
 /// Plants of annotated images (COCO files; folders of CWFID, Carrot-Weed or COCO), CSV and GeoJSON

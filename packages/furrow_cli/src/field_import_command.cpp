@@ -77,7 +77,7 @@ void add_field_import_command(CLI::App& app, int& /*exit_code*/) {
   command->add_option("--category", options->categories,
                       "what a category of a COCO file stands for: NAME=crop, NAME=weed:SPECIES");
   command->add_flag("--strict", import_options.strict,
-                    "refuse a file with a bad annotation, in place of leaving it out");
+                    "refuse a file with a bad annotation instead of skipping it");
   command
       ->add_option("--origin", options->origin,
                    "latitude, longitude and heading (degrees, from east to north) of the field's "

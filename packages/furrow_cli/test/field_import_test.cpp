@@ -100,7 +100,7 @@ TEST_F(FieldImport, BadAnnotationsAreLeftOutAndNamed) {
   const ImportedField imported = import_field(options);
   EXPECT_EQ(imported.field.plants.size(), 2U);
   ASSERT_EQ(imported.notes.size(), 3U);
-  EXPECT_NE(imported.notes[0].find("1 of 4 annotations left out"), std::string::npos);
+  EXPECT_NE(imported.notes[0].find("1 of 4 annotations skipped"), std::string::npos);
   EXPECT_NE(imported.notes[1].find("1 of 4 annotations have a box only"), std::string::npos);
   EXPECT_NE(imported.notes[2].find("1 regions to ignore"), std::string::npos);
   options.strict = true;

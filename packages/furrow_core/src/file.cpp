@@ -59,14 +59,14 @@ Status write_synced(const std::filesystem::path& path, std::string_view content)
 Status sync_folder(const std::filesystem::path& folder) {
   const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (opened.number() < 0) return io_error(folder, "cannot open the folder", errno);
-  // Some file systems cannot sync a folder; they say so by EINVAL.
+  // EINVAL: this file system cannot sync folders.
   if (::fsync(opened.number()) != 0 && errno != EINVAL) {
     return io_error(folder, "cannot sync the folder to the disk", errno);
   }
   return {};
 }
 
-/// Told apart by process and call, so that two writers of one file do not share it.
+/// Unique for each process and call: two writers of one file must not share it.
 std::filesystem::path part_of(const std::filesystem::path& path) {
   static std::atomic<unsigned> calls = 0;
   return path.string() + ".part" + std::to_string(::getpid()) + "_" + std::to_string(calls++);
@@ -88,7 +88,7 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t max
   const Error too_large{ErrorCode::kOutOfRange, path.string() + ": more than the limit of " +
                                                     std::to_string(max_bytes) + " bytes"};
   if (static_cast<std::uint64_t>(status.st_size) > max_bytes) return too_large;
-  // The size is a hint alone: files of /proc say 0, and a file may grow.
+  // The size is only a hint: files of /proc have size 0, and a file may grow.
   std::string content;
   std::size_t filled = 0;
   for (std::size_t room = static_cast<std::size_t>(status.st_size) + 1;; room = 64u << 10) {

@@ -38,7 +38,7 @@ std::string list(const std::vector<T>& values) {
 bool assignable(const ParameterValue& declared, const ParameterValue& given) {
   if (declared.index() == given.index()) return true;
   if (std::holds_alternative<double>(declared)) return std::holds_alternative<std::int64_t>(given);
-  // An empty list has no element that tells its type.
+  // An empty list has no element to determine its type.
   const auto* no_numbers = std::get_if<std::vector<double>>(&given);
   return std::holds_alternative<std::vector<std::string>>(declared) && no_numbers != nullptr &&
          no_numbers->empty();

@@ -68,7 +68,7 @@ bool Random::bernoulli(double probability) {
 }
 
 double Random::normal(double mean, double standard_deviation) {
-  // Box and Muller 1958; the second value is dropped so that a draw has no hidden state.
+  // Box and Muller 1958. The second value is dropped: keeping it would be hidden state.
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
   return mean + standard_deviation * radius * std::cos(2.0 * std::numbers::pi * uniform());
 }

@@ -8,8 +8,8 @@
 
 namespace furrow::field {
 
-/// Points in square cells, to ask whether one stands near another place. Distances asked for must
-/// not exceed the cell size.
+/// Distance queries on points that are inserted one by one, by a hash grid. Unlike
+/// furrow::PointGrid it grows. Queried distances must not exceed the cell size.
 class DistanceGrid {
  public:
   explicit DistanceGrid(double cell_m) : cell_m_(cell_m) {}

@@ -29,7 +29,7 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-/// Nothing but separators, as spreadsheets write an empty row.
+/// Only separators: the empty row of a spreadsheet.
 bool is_blank(std::string_view line) {
   return line.find_first_not_of(",; \t") == std::string_view::npos;
 }
@@ -47,7 +47,7 @@ class CsvReader {
     while (next_line(line)) {
       Status status;
       if (is_blank(line)) continue;
-      if (!have_header && line.starts_with("sep=")) continue;  // for spreadsheets; the header tells
+      if (!have_header && line.starts_with("sep=")) continue;  // the header shows it too
       if (!have_header && line.front() == '#') {
         status = read_comment(line);
       } else if (!have_header) {
@@ -84,7 +84,7 @@ class CsvReader {
   }
 
   Status read_comment(std::string_view line) {
-    // A spreadsheet fills the line up with separators.
+    // A spreadsheet appends separators.
     line = line.substr(0, line.find_last_not_of(",;\t") + 1);
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos || line.size() < 2) return {};
@@ -162,7 +162,7 @@ class CsvReader {
 
   static bool is_number(std::size_t column) { return column != 1 && column != 2; }
 
-  /// "0,25" becomes "0.25"; a cell with a point, or several commas, stays as it is.
+  /// "0,25" becomes "0.25". A cell with a point or several commas is unchanged.
   static void use_decimal_point(std::string& cell) {
     if (cell.find('.') != std::string::npos) return;
     if (std::count(cell.begin(), cell.end(), ',') == 1) cell[cell.find(',')] = '.';

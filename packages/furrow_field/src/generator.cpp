@@ -27,7 +27,7 @@ Error out_of_range(const std::string& message) {
   return {ErrorCode::kOutOfRange, message};
 }
 
-/// The field as a rectangle, with the places already taken.
+/// The field under construction, with the occupied places.
 class Generator {
  public:
   Generator(const FieldParameters& parameters, const SpeciesTable& species, std::uint64_t seed)
@@ -140,8 +140,8 @@ class Generator {
     return {};
   }
 
-  /// Parents also stand in a border of four standard deviations, so that the density does not fall
-  /// towards the edges; their weeds outside the field are not part of it.
+  /// Parents are also drawn in a border of four standard deviations: else the density would fall
+  /// towards the edges. Weeds outside the field are dropped.
   Status place_clusters() {
     const double border_m = 4.0 * p_.cluster_sd_m;
     const double length_m = p_.length_m + 2.0 * border_m;

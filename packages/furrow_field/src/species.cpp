@@ -22,7 +22,7 @@ std::vector<std::string> strings(const std::array<std::string_view, n>& names) {
   return {names.begin(), names.end()};
 }
 
-/// Lets a visitor read and write an enum by its name; a name that is not known leaves it as it is.
+/// Lets a visitor read and write an enum by its name. An unknown name leaves it unchanged.
 template <class Enum, std::size_t n>
 void visit_enum(ParameterVisitor& v, const char* name, const char* description,
                 const std::array<std::string_view, n>& names, Enum& value) {

@@ -15,10 +15,10 @@
 namespace furrow::geometry {
 namespace {
 
-/// An axis may lean this much; beyond it the nozzle's height and footprint would change along it.
+/// Largest slope of an axis. Beyond it the nozzle's height and footprint would change along it.
 constexpr double kMaxSlope = 0.05;
 
-/// urdfdom says what it does not like only through console_bridge's global handler.
+/// urdfdom reports errors only through console_bridge's global handler.
 class LogCapture final : public console_bridge::OutputHandler {
  public:
   LogCapture() : lock_(mutex()), previous_(console_bridge::getOutputHandler()) {
@@ -69,7 +69,7 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
   return X;
 }
 
-/// The way from the base to a link: its pose with every joint at zero, and the movable joints.
+/// The chain from the base to a link: its pose with every joint at zero, and the movable joints.
 struct Chain {
   Eigen::Isometry3d X_BL = Eigen::Isometry3d::Identity();
   std::vector<urdf::JointConstSharedPtr> moving;  ///< from the link towards the base
@@ -109,7 +109,7 @@ class ToolBuilder {
   [[noreturn]] void fail(int line, const std::string& key, const std::string& message) const {
     throw ConfigError({file_, line}, key, message);
   }
-  /// To the micrometre, so that rounding in the transforms does not decide between equal places.
+  /// To the micrometre: rounding in the transforms must not decide between equal places.
   static bool ahead_of(const AxisModel& a, const AxisModel& b) {
     const auto a_um = std::llround(1e6 * a.p_BN0.x());
     const auto b_um = std::llround(1e6 * b.p_BN0.x());

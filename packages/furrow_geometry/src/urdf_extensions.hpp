@@ -30,14 +30,14 @@ struct CameraElement {
   CameraIntrinsics intrinsics;
 };
 
-/// A prismatic joint as it stands in the file.
+/// A prismatic joint of the file.
 struct PrismaticElement {
   int line = 0;
   LimitElement limit;
 };
 
-/// What Furrow reads from the XML itself: the limits of the prismatic joints and the <furrow>
-/// element. The kinematic tree is urdfdom's part.
+/// The parts of the XML that urdfdom does not read: limits of prismatic joints and the <furrow>
+/// element. urdfdom reads the kinematic tree.
 struct UrdfExtensions {
   int line = 0;  ///< of <furrow>
   std::string base_link = "base_link";

@@ -34,7 +34,7 @@ void filter_predict(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(filter.predict(ahead));
 }
 
-// A GNSS measurement that comes 100 ms late, so that what came since is applied again.
+// A GNSS measurement that arrives 100 ms late: the later measurements are applied again.
 void filter_late_gnss(benchmark::State& state) {
   const test::DriveOptions options;
   const test::Drive drive = test::simulate_drive(1, options);

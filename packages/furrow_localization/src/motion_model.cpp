@@ -143,7 +143,7 @@ Outcome MotionModel::update(FilterState& state, const WheelOdometry& measurement
   const Outcome yaw_rate =
       update_scalar(state, h, measurement.yaw_rate_radps - expected, measurement.yaw_rate_variance,
                     kYawRate, state.repeats.wheel_yaw_rate);
-  // What went worse speaks for the message.
+  // The worse of the two tests is the message's.
   if (speed == Outcome::kGated || yaw_rate == Outcome::kGated) return Outcome::kGated;
   return speed == Outcome::kRecovered ? speed : yaw_rate;
 }

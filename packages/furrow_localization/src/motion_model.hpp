@@ -9,13 +9,13 @@
 
 namespace furrow::localization {
 
-/// Places in the filter's state.
+/// Indices into the filter's state.
 enum StateIndex : int { kX, kY, kHeading, kSpeed, kYawRate, kGyroBias, kSpeedScale, kCurvature };
 inline constexpr int kStates = 8;
 using StateVector = Eigen::Matrix<double, kStates, 1>;
 using StateCovariance = Eigen::Matrix<double, kStates, kStates>;
 
-/// Measurements in a row that were kept out of the filter.
+/// Measurements in a row that were rejected.
 struct Repeats {
   int speed = 0;
   int wheel_yaw_rate = 0;
@@ -24,7 +24,7 @@ struct Repeats {
   Eigen::Vector2d gnss_innovation = Eigen::Vector2d::Zero();  ///< of the last of them
 };
 
-/// All that the filter knows at an instant.
+/// The filter's state at one time.
 struct FilterState {
   Time stamp = {};
   StateVector x = StateVector::Zero();
@@ -32,7 +32,7 @@ struct FilterState {
   Repeats repeats = {};
 };
 
-/// The filter's arithmetic, without memory of its own: prediction and the update of each sensor.
+/// The filter's equations, stateless: prediction, and the update for each sensor.
 class MotionModel {
  public:
   explicit MotionModel(const PoseFilterParameters& parameters);
@@ -46,13 +46,13 @@ class MotionModel {
   Outcome update(FilterState& state, const GnssPosition& measurement) const;
 
   [[nodiscard]] static PoseEstimate estimate(const FilterState& state);
-  /// The covariance that a GNSS measurement is given. @pre it has a fix.
+  /// The covariance to use for a GNSS measurement. @pre it has a fix.
   [[nodiscard]] Eigen::Matrix2d gnss_covariance(const GnssPosition& measurement) const;
 
  private:
   void step(FilterState& state, double dt_s) const;
-  /// One gated scalar measurement with Jacobian `h`; `widened` is the state that grows uncertain
-  /// when the measurement has been kept out too often.
+  /// One gated scalar measurement with Jacobian `h`; `widened` is the state whose variance
+  /// grows when the measurement has been rejected too often.
   Outcome update_scalar(FilterState& state, const StateVector& h, double innovation,
                         double variance, StateIndex widened, int& repeats) const;
 

@@ -107,7 +107,7 @@ Outcome OdometryIntegrator::Impl::add(const WheelOdometry& m) {
     if (measured_ && m.stamp == last.estimate.stamp) return Outcome::kDuplicate;
     next.estimate = last.estimate;
     if ((m.stamp - last.estimate.stamp).to_seconds() <= parameters_.max_gap_s) {
-      // After a reset nothing is known of the motion before the first measurement but itself.
+      // After a reset the first measurement is the only knowledge of the motion before it.
       const WheelOdometry& from = measured_ ? last.newest : m;
       next.estimate = moved(last.estimate, m.stamp, 0.5 * (from.speed_mps + m.speed_mps),
                             0.5 * (from.yaw_rate_radps + m.yaw_rate_radps), m.speed_variance,

@@ -14,7 +14,7 @@ namespace furrow::localization {
 namespace {
 
 constexpr double kMaxPosition_m = 1e7;
-constexpr double kMaxRate = 100.0;  // m/s and rad/s: beyond what any field robot does
+constexpr double kMaxRate = 100.0;  // m/s and rad/s: beyond any field robot
 
 /// The order of the alternatives is the order in which measurements of one stamp are applied.
 using AnyMeasurement = std::variant<WheelOdometry, ImuYawRate, GnssPosition>;

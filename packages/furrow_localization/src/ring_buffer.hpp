@@ -33,7 +33,7 @@ class RingBuffer {
     head_ = (head_ + 1) % slots_.size();
     --size_;
   }
-  /// Makes room before the i-th oldest by moving what is newer, and gives the free place.
+  /// Makes room before the i-th oldest by moving the newer elements; returns the free element.
   /// @pre not full, i <= size().
   [[nodiscard]] T& insert(std::size_t i) {
     assert(!full() && i <= size_);

@@ -9,9 +9,9 @@
 
 /// COCO instance annotations (Lin et al. 2014), read as pycocotools reads them.
 ///
-/// Coordinates. COCO's polygons and boxes are measured from the upper left CORNER of the image; its
-/// keypoints are pixel indices, that is, from the CENTRE of the upper left pixel (as Detectron2
-/// reads them too). Polygons and boxes become masks here; a stem stays as the file says it.
+/// Coordinates. COCO's polygons and boxes are measured from the upper left CORNER of the image. Its
+/// keypoints are pixel indices: measured from the CENTRE of the upper left pixel, as Detectron2
+/// reads them. Polygons and boxes become masks; a stem keeps the numbers of the file.
 ///
 /// Stem. The keypoint that the category calls "stem", where its visibility is above 0; no other
 /// one, whatever the number of keypoints.
@@ -20,18 +20,20 @@
 /// plain or compressed; without a segmentation the box (box_only). Unlike pycocotools, a list of
 /// four numbers is a polygon of two corners, and not a box.
 ///
-/// Crop or weed. What CocoOptions::kinds says of the category's name; else its "supercategory";
-/// else its name, if that is "crop" or "weed"; else CocoOptions::unknown_kind.
+/// Crop or weed. The first of these that says "crop" or "weed": CocoOptions::kinds by the
+/// category's name, its "supercategory", its name; else CocoOptions::unknown_kind decides.
 ///
-/// "iscrowd" is a region to ignore. Beyond COCO are read: "resolution_mm_per_px" of the file, its
-/// "info" or an image; "ignore_boxes", "pose" [x_m, y_m, heading_rad], "velocity_mps", "stamp_ns",
-/// "sequence", "labelled" and "depth_file_name" of an image; "area_mm2", "score",
-/// "attributes.truncated" and "attributes.mask" ("box": box_only) of an annotation. File names are
-/// relative to the annotation file's folder.
+/// "iscrowd" is a region to ignore. File names are relative to the annotation file's folder.
+/// Extensions of the format:
+/// - of the file, its "info" or an image: "resolution_mm_per_px";
+/// - of an image: "ignore_boxes", "pose" [x_m, y_m, heading_rad], "velocity_mps", "stamp_ns",
+///   "sequence", "labelled", "depth_file_name";
+/// - of an annotation: "area_mm2", "score", "attributes.truncated", "attributes.mask" ("box":
+///   box_only).
 namespace furrow::annotation {
 
 enum class UnknownKind {
-  kAssumeWeed,  ///< and say so in the report
+  kAssumeWeed,  ///< and list them in the report
   kRefuse,      ///< kNotFound, names the categories
 };
 
@@ -48,11 +50,10 @@ struct CocoOptions {
 [[nodiscard]] Result<Dataset> read_coco(const std::filesystem::path& file,
                                         const CocoOptions& options = {});
 
-/// Writes what read_coco reads, masks as compressed run lengths, so that they come back bit by bit.
-/// Image paths become relative to the file's folder where they lie under it. A path that is not
-/// UTF-8 is kept as "file_name_percent" beside a readable "file_name". The file is written whole or
-/// not at all. Errors: kInvalidArgument (a box or mask beside its image, a category not in the
-/// list), kIo.
+/// Writes a file for read_coco, with masks as compressed run lengths: they read back bit-identical.
+/// Image paths below the file's folder become relative to it. A path that is not UTF-8 is also
+/// written as "file_name_percent". The file is written whole or not at all. Errors:
+/// kInvalidArgument (a box or mask outside its image, an unlisted category), kIo.
 [[nodiscard]] Status write_coco(const std::filesystem::path& file, const Dataset& dataset);
 
 }  // namespace furrow::annotation

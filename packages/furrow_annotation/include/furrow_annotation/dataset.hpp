@@ -12,10 +12,10 @@
 #include "furrow_core/time.hpp"
 #include "furrow_geometry/pose.hpp"
 
-/// Annotated images in memory, whatever file they come from.
+/// Annotated images in memory, independent of their file format.
 ///
-/// Pixel coordinates have one convention here: u to the right, v down, and pixel (0, 0) is the
-/// CENTRE of the upper left pixel, which covers [-0.5, 0.5) in both. The readers translate.
+/// Pixel coordinates: u to the right, v down, (0, 0) at the CENTRE of the upper left pixel. That
+/// pixel covers [-0.5, 0.5) in both. The readers convert to this convention.
 namespace furrow::annotation {
 
 enum class SubClassKind { kCrop, kWeed };
@@ -28,10 +28,10 @@ struct SubClass {
 
 struct AnnotatedInstance {
   SubClassKind kind = SubClassKind::kWeed;
-  std::string category;  ///< species, or "crop" / "weed" where the data set says no more
+  std::string category;  ///< species, or "crop" / "weed" when unknown
   cv::Rect box_px;       ///< bounding box of the mask, inside the image, not empty
   cv::Mat mask;          ///< CV_8U, size of box_px; 255 plant
-  std::optional<Eigen::Vector2d> stem_px;  ///< where it was marked; may lie outside the image
+  std::optional<Eigen::Vector2d> stem_px;  ///< as annotated; may be outside the image
   std::optional<double> area_mm2;          ///< leaf area of the whole plant from straight above
   std::optional<double> score;             ///< of a detection; none: annotated by hand or known
   bool crowd = false;                      ///< COCO's iscrowd: a region to ignore, not one plant
@@ -51,7 +51,7 @@ struct AnnotatedImage {
   /// CV_8U of the image's size: 0 soil, else plant, where the data set has a vegetation mask of its
   /// own that is finer than the instances (CWFID). Empty: the union of the instances.
   cv::Mat vegetation;
-  std::optional<double> resolution_mm_per_px;  ///< ground of a pixel, where the file says it
+  std::optional<double> resolution_mm_per_px;  ///< ground of a pixel, when the file has it
   std::optional<geometry::Pose2> X_FB;         ///< robot pose in the field at the exposure
   std::optional<double> velocity_mps;          ///< along the robot's x
   std::optional<Time> stamp;
@@ -64,11 +64,11 @@ struct Dataset {
   std::string name;
   std::vector<SubClass> classes;
   std::vector<AnnotatedImage> images;
-  std::optional<double> resolution_mm_per_px;  ///< of all images that do not say their own
-  ReadReport report;                           ///< what reading left out or assumed
+  std::optional<double> resolution_mm_per_px;  ///< of the images without their own
+  ReadReport report;                           ///< skipped annotations and assumptions
 };
 
-/// Side and area limits of images, so that a corrupt header cannot fill the memory.
+/// Limits of an image's side and area: a corrupt header must not fill the memory.
 constexpr int kMaxImageSide_px = 16384;
 constexpr int kMaxImageArea_px = 64 * 1024 * 1024;
 

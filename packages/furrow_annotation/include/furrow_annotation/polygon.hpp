@@ -8,14 +8,14 @@
 
 namespace furrow::annotation {
 
-/// Corners in COCO's coordinates: measured from the upper left CORNER of the image, so that the
-/// pixel of column c covers [c, c + 1). The last corner joins the first.
+/// Corners in COCO's coordinates, measured from the upper left CORNER of the image: the pixel of
+/// column c covers [c, c + 1). The last corner joins the first.
 using CornerPolygon = std::vector<Eigen::Vector2d>;
 
 /// Run lengths of the pixels whose centres are inside, by the even-odd rule. Corners are rounded to
-/// a fifth of a pixel and edges stepped through on that grid, as COCO's reference implementation
-/// (pycocotools, mask.frPoly) does, so that masks and areas are the same. Holds no set pixel for a
-/// polygon without area, or beside the image. Cost: five steps for each pixel of the outline.
+/// a fifth of a pixel, and edges are stepped on that grid. COCO's reference implementation
+/// (pycocotools, mask.frPoly) does the same; masks and areas agree with it. No pixel is set for a
+/// polygon without area or outside the image. Cost: five steps for each pixel of the outline.
 /// @pre coordinates are finite and at most 1e6 from 0; size is not empty.
 [[nodiscard]] RunLengths polygon_run_lengths(const CornerPolygon& polygon, cv::Size size);
 

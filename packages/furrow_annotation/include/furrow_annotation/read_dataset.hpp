@@ -7,11 +7,11 @@
 
 namespace furrow::annotation {
 
-/// Reads a data set of any format known here: a COCO file; or a folder of Carrot-Weed
-/// (plant_masks/), of CWFID (annotations/ or masks/), or with a COCO file evaluation.json, looked
-/// for in this order. The name is that of the format or, of COCO, of the file or folder.
-/// resolution_mm_per_px is set as the file says it, and estimated for CWFID and Carrot-Weed.
-/// kNotFound for anything else; further errors as the formats' readers.
+/// Reads a data set of any known format: a COCO file, or a folder. A folder is tested in this
+/// order: Carrot-Weed (plant_masks/), CWFID (annotations/ or masks/), COCO (evaluation.json). Its
+/// name is the format's, for COCO that of the file or folder. resolution_mm_per_px is the file's,
+/// and an estimate for CWFID and Carrot-Weed. kNotFound for other folders; further errors as the
+/// readers.
 [[nodiscard]] Result<Dataset> read_dataset(const std::filesystem::path& path,
                                            const MaskReader& read_mask,
                                            const CocoOptions& options = {});

@@ -17,7 +17,7 @@ using RunLengths = std::vector<std::uint32_t>;
 /// @pre mask is CV_8U; not zero counts as set.
 [[nodiscard]] RunLengths encode_run_lengths(const cv::Mat& mask);
 
-/// A mask cut to the bounding box of what is set. `box_px` is empty when nothing is.
+/// A mask cut to the bounding box of its set pixels. `box_px` is empty when there is none.
 struct BoxedMask {
   cv::Rect box_px;
   cv::Mat pixels;  ///< CV_8U of 0 and 255, size of box_px
@@ -25,8 +25,9 @@ struct BoxedMask {
 /// kParse when the runs do not add up to the size.
 [[nodiscard]] Result<BoxedMask> decode_run_lengths(const RunLengths& runs, cv::Size size);
 
-/// The printable ("compressed") form: each run from the fourth on as the difference to the run
-/// before the last, in groups of five bits, lowest first, one character a group.
+/// The printable ("compressed") form. Each run from the fourth on is stored as the difference to
+/// the run two before it. Numbers are split into groups of five bits, lowest first, one character
+/// each.
 [[nodiscard]] std::string compress_run_lengths(const RunLengths& runs);
 /// kParse on characters or lengths that the form does not have.
 [[nodiscard]] Result<RunLengths> decompress_run_lengths(std::string_view text);

@@ -9,16 +9,16 @@
 
 namespace furrow {
 
-/// The whole file. Errors name it: kNotFound, kIo, and kOutOfRange above `max_bytes`, so that a
-/// wrong path does not fill the memory.
+/// Reads the whole file. Errors name the file: kNotFound, kIo, and kOutOfRange above `max_bytes`,
+/// which bounds the memory for a wrong path.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::size_t max_bytes = 256u << 20);
 
-/// Writes beside the target, syncs to the disk, renames over the target and syncs its folder: a
-/// reader sees the old file or the new one, never a part, also after a loss of power. Returns when
-/// the disk has the file. Parent folders are made. On failure the target is as it was, and the
-/// Error (kIo) says why; only where the folder alone could not be synced is the new file in place
-/// already.
+/// Writes a temporary file in the same folder, syncs it, renames it over the target and syncs the
+/// folder. A reader sees the old file or the new one, never a part, even after a power loss.
+/// Creates parent folders. Blocks until the disk has the file. On failure (kIo) the target is
+/// unchanged, except when only the last step fails: the new file is in place, but may not survive a
+/// power loss.
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path,
                                            std::string_view content);
 

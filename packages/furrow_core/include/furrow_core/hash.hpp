@@ -6,7 +6,7 @@
 namespace furrow {
 
 /// FNV-1a with 64 bits (Fowler, Noll and Vo). The same on every machine and standard library,
-/// unlike std::hash; not for data that somebody may have made on purpose.
+/// unlike std::hash. Not collision-resistant: do not use it for untrusted data.
 [[nodiscard]] constexpr std::uint64_t fnv1a_64(std::string_view text) {
   std::uint64_t value = 0xCBF29CE484222325ull;
   for (const char c : text) {

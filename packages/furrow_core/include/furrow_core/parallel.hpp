@@ -8,9 +8,9 @@ namespace furrow {
 
 /// Calls `work(i)` once for each i < count and returns when all calls have. `threads` counts the
 /// calling thread, which works too; 0: as many as the machine has. With one thread the calls are
-/// made in order, and no memory is taken. What a call writes must depend on i alone: then the
-/// result is the same for any number of threads. Rethrows the exception of the least i that throws;
-/// calls of a greater i that have not started by then are left out.
+/// made in order and nothing is allocated. A call must write only data that belongs to its i; then
+/// the result is the same for any number of threads. Rethrows the exception of the smallest i that
+/// throws. Calls with a larger i that have not started by then are skipped.
 void parallel_for(std::size_t count, std::size_t threads,
                   const std::function<void(std::size_t)>& work);
 

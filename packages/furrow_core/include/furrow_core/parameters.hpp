@@ -11,18 +11,18 @@
 
 namespace furrow {
 
-/// What is said of one parameter, once, where it is declared.
+/// Declaration of one parameter.
 struct ParameterInfo {
   std::string name = {};  ///< snake_case, with its unit as a suffix where it has one
   std::string unit = {};  ///< "m", "mm2", "m/s"; empty where there is none
   std::string description = {};
   double min = -std::numeric_limits<double>::infinity();  ///< numbers, and each entry of a list
   double max = std::numeric_limits<double>::infinity();
-  std::vector<std::string> choices = {};  ///< strings: what is allowed; empty: anything
+  std::vector<std::string> choices = {};  ///< allowed strings; empty: any
 };
 
-/// Reads or writes each parameter of a plain struct. A struct of parameters declares itself by one
-/// function, which gives its defaults, documentation, validation and loading:
+/// Reads or writes each parameter of a plain struct. One function of the struct declares all its
+/// parameters. Defaults, documentation, validation and loading follow from it. Example:
 ///
 ///   struct TrackerParameters {
 ///     double gate_m = 0.02;
@@ -46,7 +46,7 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string, std
 
 /// "bool", "integer", "number", "string", "list of numbers", "list of strings".
 [[nodiscard]] std::string type_name(const ParameterValue& value);
-/// As it would stand in a parameter file.
+/// In the syntax of a parameter file.
 [[nodiscard]] std::string to_text(const ParameterValue& value);
 
 struct DeclaredParameter {
@@ -54,14 +54,14 @@ struct DeclaredParameter {
   ParameterValue default_value;
 };
 
-/// A value as a file or the command line gives it, with where it stands.
+/// A value from a file or the command line, with its source.
 struct GivenParameter {
   std::string name;
   ParameterValue value;
   SourceLocation where;
 };
 
-/// Lists what a struct declares, with the values that it holds now as defaults.
+/// Lists the parameters of a struct, with its present values as defaults.
 class ParameterLister final : public ParameterVisitor {
  public:
   void visit(const ParameterInfo& info, bool& value) override;
@@ -82,8 +82,8 @@ class ParameterLister final : public ParameterVisitor {
 void check_parameters(const std::vector<DeclaredParameter>& declared,
                       const std::vector<GivenParameter>& given);
 
-/// Puts the given values into a struct; what is not given keeps its default. Throws as
-/// check_parameters does, before anything is assigned. Errors name "prefix.key".
+/// Assigns the given values to a struct; other parameters keep their defaults. Throws like
+/// check_parameters, before the first assignment. Errors name "prefix.key".
 class ParameterLoader {
  public:
   template <class Parameters>
@@ -111,8 +111,8 @@ class ParameterLoader {
   };
 };
 
-/// Visits a part of a struct with each name behind a prefix, so that two parts with like names fit
-/// into one struct: `PrefixedVisitor wheel(v, "wheel_"); wheel_parameters.visit(wheel);`
+/// Visits a member struct with a prefix before each name. Two members of one type then fit into one
+/// struct: `PrefixedVisitor wheel(v, "wheel_"); wheel_parameters.visit(wheel);`
 class PrefixedVisitor final : public ParameterVisitor {
  public:
   PrefixedVisitor(ParameterVisitor& inner, std::string prefix)
@@ -130,7 +130,7 @@ class PrefixedVisitor final : public ParameterVisitor {
   std::string prefix_;
 };
 
-/// What `Parameters` declares, with its defaults.
+/// The parameters that `Parameters` declares, with their defaults.
 template <class Parameters>
 [[nodiscard]] std::vector<DeclaredParameter> declared_parameters() {
   Parameters parameters;
@@ -139,9 +139,8 @@ template <class Parameters>
   return lister.declared();
 }
 
-/// Throws ConfigError when a value of the struct is outside its declared range or choices. For code
-/// that takes a parameter struct from a caller instead of from ParameterLoader. `where` is named in
-/// the error.
+/// Throws ConfigError when a value of the struct is outside its declared range or choices. For
+/// parameters that come from a caller and not from ParameterLoader. The error names `where`.
 template <class Parameters>
 void validate_parameters(Parameters parameters, const SourceLocation& where = {}) {
   ParameterLister lister;

@@ -10,10 +10,9 @@
 
 namespace furrow {
 
-/// Points in the plane by the cells of a uniform grid, to find those near a place. `Point` has x()
-/// and y(), such as Eigen::Vector2d. Built anew for each set of points; a grid that is built again
-/// keeps its memory. Building is linear in the points, and the number of cells is at most
-/// kMaxCells. Const calls may run on several threads.
+/// Radius and nearest-neighbour queries on points in the plane, by a uniform grid. `Point` has x()
+/// and y(), such as Eigen::Vector2d. build() is linear in the number of points, reuses the memory
+/// of the previous grid and makes at most kMaxCells cells. Const calls are thread-safe.
 template <class Point>
 class PointGrid {
  public:
@@ -27,7 +26,7 @@ class PointGrid {
   void build(std::span<const Point> points, double cell);
 
   /// Calls `visit(index, distance)` for each point within `radius` of `centre`, the rim included:
-  /// cell by cell, within a cell in the order of the points. For none when the centre is not
+  /// cell by cell, within a cell in the order of the points. Finds nothing when the centre is not
   /// finite.
   template <class Visit>
   void for_each_within(const Point& centre, double radius, Visit&& visit) const;

@@ -7,14 +7,14 @@
 namespace furrow {
 
 /// Seeded random numbers that are the same on every standard library: xoshiro256** (Blackman and
-/// Vigna 2021), seeded by splitmix64. Give each use its own stream, so that drawing more in one
-/// place changes nothing elsewhere. Not thread-safe; copy freely.
+/// Vigna 2021), seeded by splitmix64. Give each use its own stream: then one more draw in
+/// one place changes no other. Not thread-safe. Copyable.
 class Random {
  public:
   explicit Random(std::uint64_t seed);
-  /// An independent stream of the same seed, told apart by its name.
+  /// An independent stream of the same seed, identified by its name.
   Random(std::uint64_t seed, std::string_view stream);
-  /// An independent stream of the same seed and name, told apart by `index` (a plant, a frame).
+  /// An independent stream of the same seed and name, identified by `index` (a plant, a frame).
   Random(std::uint64_t seed, std::string_view stream, std::uint64_t index);
 
   [[nodiscard]] std::uint64_t next();

@@ -8,8 +8,8 @@
 
 namespace furrow {
 
-/// A value, or the Error that stands in its place. Reading the one that is not there is a bug and
-/// throws std::bad_variant_access or std::bad_optional_access.
+/// A value or an Error. Reading the absent one is a bug and throws std::bad_variant_access or
+/// std::bad_optional_access.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -38,8 +38,8 @@ namespace furrow {
   return quantile(std::move(values), 0.5);
 }
 
-/// An element with as many elements below as above it by `less`; of an even number the upper of the
-/// two in the middle. Reorders `values`. Linear time. @pre not empty.
+/// The middle element in the order of `less`; for an even number of elements the upper of the two.
+/// Reorders `values`. Linear time. @pre not empty.
 template <class T, class Less = std::less<>>
 [[nodiscard]] T& median_element(std::span<T> values, Less less = {}) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

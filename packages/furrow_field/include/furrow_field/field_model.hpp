@@ -27,8 +27,8 @@ struct Plant {
   double heading_rad = 0.0;                         ///< of the first leaf
 };
 
-/// The plants of a stretch of field. `source` says where they come from, plainly ("generated:
-/// poisson, 8.2 weeds/m2, seed 7"; "imported: FILE"), and stands beside every result made of them.
+/// The plants of a stretch of field. `source` is their origin ("generated: poisson, 8.2 weeds/m2,
+/// seed 7"; "imported: FILE"); every result shows it.
 struct FieldModel {
   std::string name;
   std::string source;
@@ -38,21 +38,21 @@ struct FieldModel {
   std::vector<Plant> plants;    ///< in the order of x, then id
 };
 
-/// More than a day's work of any robot; files and generators refuse to go beyond.
+/// More than a day's work of any robot; files and generators refuse larger fields.
 inline constexpr std::size_t kMaxPlants = 1'000'000;
 inline constexpr double kMaxFieldLength_m = 10'000.0;
 inline constexpr double kMaxFieldWidth_m = 1'000.0;
 
 /// "crop", "weed".
 [[nodiscard]] std::string_view to_string(PlantKind kind);
-/// Nothing for any other text.
+/// Empty for any other text.
 [[nodiscard]] std::optional<PlantKind> plant_kind_from(std::string_view text);
 
-/// Checks what FieldModel promises: finite figures, plants inside the field, unique ids, the order,
-/// texts without control characters, the bounds above. The Error names the plant.
+/// Checks the invariants of FieldModel: finite numbers, plants inside the field, unique ids, the
+/// order, texts without control characters, the bounds above. The Error names the plant.
 [[nodiscard]] Status validate(const FieldModel& field);
 
-/// Brings plants into the order that FieldModel promises.
+/// Sorts plants into the order of FieldModel.
 void sort_plants(FieldModel& field);
 
 }  // namespace furrow::field

@@ -11,7 +11,7 @@
 
 namespace furrow::field {
 
-/// What a generated field looks like. The presets in params/fields/ hold these keys.
+/// Parameters of a generated field; the keys of the presets in params/fields/.
 struct FieldParameters {
   std::string name = "generated";
   double length_m = 20.0;
@@ -23,7 +23,7 @@ struct FieldParameters {
   double cluster_weeds = 8.0;
   double cluster_sd_m = 0.12;
   std::vector<std::string> weed_species;  ///< empty: every weed of the table
-  std::vector<double> weed_shares;        ///< beside weed_species; empty: equal
+  std::vector<double> weed_shares;        ///< of weed_species; empty: equal
   std::int64_t weed_leaves_min = 2;
   std::int64_t weed_leaves_max = 6;
 
@@ -45,11 +45,10 @@ struct FieldParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// A field of these parameters. The expected number of weeds is weeds_per_m2 times the area, also
-/// with minimum distances: a weed that stands too near is placed anew. Deterministic in
-/// (parameters, species, seed); crop and weeds draw from streams of their own. Fails with
-/// kOutOfRange (a parameter, or more than kMaxPlants), kNotFound (a species) or kNoSolution (the
-/// distances leave no room).
+/// Generates a field. The expected number of weeds is weeds_per_m2 times the area, also with
+/// minimum distances: a weed that is too near is drawn again. Deterministic in (parameters,
+/// species, seed); crop and weeds use separate random streams. Errors: kOutOfRange (a parameter, or
+/// more than kMaxPlants), kNotFound (a species), kNoSolution (the distances leave no room).
 [[nodiscard]] Result<FieldModel> generate_field(const FieldParameters& parameters,
                                                 const SpeciesTable& species, std::uint64_t seed);
 

@@ -11,7 +11,7 @@
 
 namespace furrow::field {
 
-/// A plant as it was measured in an image. Pixel (0, 0) is the centre of the upper left pixel.
+/// A plant as measured in an image. Pixel (0, 0) is the centre of the upper left pixel.
 struct ImagePlant {
   PlantKind kind = PlantKind::kWeed;
   std::string species;  ///< empty: not known
@@ -36,7 +36,7 @@ struct LayoutParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// Where an image lies on the ground: a rectangle from x_m to x_m + length_m, its middle on y = 0.
+/// The rectangle of an image on the ground: from x_m to x_m + length_m, centred on y = 0.
 struct ImagePlacement {
   std::string image;
   int width_px = 0;
@@ -54,13 +54,12 @@ struct ImagePlacement {
 struct LaidImages {
   FieldModel field;
   std::vector<ImagePlacement> placements;
-  /// Plants that were left out because their stem lies outside their image.
+  /// Number of plants that were skipped because their stem is outside their image.
   std::size_t outside = 0;
 };
 
-/// Lays the images' plants one after another along the row. Errors: kInvalidArgument without an
-/// image, kOutOfRange for sizes and parameters outside their range. `source` goes into the field as
-/// it is.
+/// Places the images one after another along the row. `source` becomes FieldModel::source. Errors:
+/// kInvalidArgument without an image, kOutOfRange for sizes and parameters outside their range.
 [[nodiscard]] Result<LaidImages> lay_images(const std::vector<PlantImage>& images,
                                             const LayoutParameters& parameters,
                                             const std::string& name, const std::string& source);

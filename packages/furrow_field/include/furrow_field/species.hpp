@@ -12,7 +12,7 @@ namespace furrow::field {
 
 enum class GrowthForm : std::uint8_t { kBroadleaf, kGrass };
 
-/// How a plant is built, for renderers.
+/// Shape of a plant, for renderers.
 enum class LeafForm : std::uint8_t {
   kBeet,
   kBroadleaf,
@@ -30,8 +30,8 @@ enum class LeafForm : std::uint8_t {
 /// "beet", "broadleaf", "lobed", and so on.
 [[nodiscard]] std::string_view to_string(LeafForm form);
 
-/// What is known of a species. The figures are Furrow's own defaults, rough by nature, to be
-/// replaced by the user's in params/species.yaml.
+/// Properties of a species. The defaults are rough figures of Furrow's own; replace them in
+/// params/species.yaml.
 struct Species {
   std::string name;       ///< lower case, words joined by '_'
   std::string botanical;  ///< binomial
@@ -40,7 +40,7 @@ struct Species {
   LeafForm leaf_form = LeafForm::kBroadleaf;
   double beta = 1.0;        ///< harmfulness factor beta_w of the paper's harmfulness equation
   double priority = 1.0;    ///< class weight in planning; the paper uses 0.1 and 1.0
-  bool beneficial = false;  ///< a dicot worth leaving where the crop does not suffer
+  bool beneficial = false;  ///< a dicot to keep where the crop does not suffer
   double radius_two_leaves_m = 0.012;  ///< canopy radius with two leaves
   double radius_eight_leaves_m = 0.05;
   double leaf_cover = 0.45;  ///< leaf area seen from above over the canopy's disc

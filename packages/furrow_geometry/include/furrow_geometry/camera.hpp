@@ -24,14 +24,14 @@ class PinholeCamera {
 
   [[nodiscard]] const CameraIntrinsics& intrinsics() const { return intrinsics_; }
 
-  /// The pixel that sees p_C, also outside the image; nothing when p_C is not in front of the
+  /// The pixel that sees p_C, also outside the image; empty when p_C is not in front of the
   /// camera.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
   /// The point seen at a pixel with the given depth along z. @pre depth_m > 0.
   [[nodiscard]] Eigen::Vector3d unproject(const Eigen::Vector2d& pixel, double depth_m) const;
   [[nodiscard]] bool in_image(const Eigen::Vector2d& pixel) const;
-  /// The area that one pixel covers on a plane square to the optical axis, in mm2: the per-pixel
-  /// area that is summed over a mask to give a plant's size (Halstead et al. 2021).
+  /// Area of one pixel on a plane perpendicular to the optical axis, in mm2. Summed over a mask it
+  /// gives a plant's size (Halstead et al. 2021).
   [[nodiscard]] double pixel_area_mm2(double depth_m) const;
 
  private:

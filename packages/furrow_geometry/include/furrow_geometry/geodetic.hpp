@@ -9,9 +9,9 @@ namespace GeographicLib {
 class LocalCartesian;
 }
 
-/// The one place where positions on the earth are converted: fixes on their way in, sprays and
-/// field files on their way out. The formulas are GeographicLib's (Karney), exact to nanometres at
-/// every latitude and longitude. Link furrow_geometry::furrow_geodesy.
+/// All conversions between WGS 84 and the field frame: GNSS fixes in, sprays and field files out.
+/// The formulas are GeographicLib's (Karney), accurate to nanometres at every latitude and
+/// longitude. Link furrow_geometry::furrow_geodesy.
 namespace furrow::geometry {
 
 /// A position on WGS 84: geodetic latitude and longitude in degrees, as receivers and files give
@@ -22,9 +22,9 @@ struct GeodeticPosition {
   double height_m = 0.0;
 };
 
-/// The field frame F on the earth: a plane that touches the ellipsoid's normal at an origin, z up,
-/// and the row direction (F's x) as an angle counted counter-clockwise from east. Copies share
-/// their constants; const calls may run on several threads.
+/// The field frame F on the earth: the plane perpendicular to the ellipsoid's normal at an origin,
+/// z up. The row direction (F's x) is an angle counter-clockwise from east. Const calls are
+/// thread-safe; copies are cheap.
 class FieldGeoreference {
  public:
   /// kInvalidArgument: a value is not finite, |latitude| > 90 deg, |longitude| > 360 deg, or
@@ -32,14 +32,14 @@ class FieldGeoreference {
   [[nodiscard]] static Result<FieldGeoreference> at(const GeodeticPosition& origin,
                                                     double row_angle_rad);
 
-  /// Any longitude will do, also one beyond the date line.
+  /// Accepts any longitude, also across the date line.
   [[nodiscard]] Eigen::Vector3d to_field(const GeodeticPosition& position) const;
   /// Longitude in [-180, 180] deg.
   [[nodiscard]] GeodeticPosition to_geodetic(const Eigen::Vector3d& p_F_m) const;
 
-  /// The point of the plane z = 0 above or below a longitude (x) and latitude (y) in degrees: what
-  /// a map without heights means. Inverse of to_lon_lat_deg. NaN for a latitude beyond a pole, and
-  /// for a place farther than 1000 km from the origin, which no plane stands for.
+  /// The point of the plane z = 0 at a longitude (x) and latitude (y) in degrees, for maps without
+  /// heights. Inverse of to_lon_lat_deg. NaN for a latitude beyond a pole, and for a place farther
+  /// than 1000 km from the origin.
   [[nodiscard]] Eigen::Vector2d from_lon_lat_deg(const Eigen::Vector2d& lon_lat_deg) const;
   [[nodiscard]] Eigen::Vector2d to_lon_lat_deg(const Eigen::Vector2d& p_F_m) const;
 

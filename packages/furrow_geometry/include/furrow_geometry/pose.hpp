@@ -15,7 +15,7 @@ struct Pose2 {
   double heading_rad = 0.0;
 };
 
-/// How a frame B moves over ground, as seen in B.
+/// Planar velocity of a frame B over ground, in B.
 struct Twist2 {
   double vx_mps = 0.0;
   double vy_mps = 0.0;

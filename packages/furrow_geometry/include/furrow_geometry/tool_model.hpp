@@ -43,8 +43,8 @@ struct CameraModel {
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
 };
 
-/// What the software knows of the machine; all of it from the URDF. Axes in the order of the
-/// joints' distance from the front (largest x first), then by name.
+/// The machine, as its URDF describes it. Axes are sorted from the front (largest x first), then by
+/// name.
 struct ToolModel {
   std::string robot;
   std::string base_link;
@@ -52,11 +52,11 @@ struct ToolModel {
   std::vector<CameraModel> cameras;
 };
 
-/// Reads a URDF with Furrow's extension elements (docs/urdf.md). Throws ConfigError that names the
-/// file and the link or joint: not a URDF, no base link, no axis, an axis without a limit or a
-/// nozzle, a limit that is not positive, a camera without a size.
+/// Reads a URDF with Furrow's extension elements (docs/urdf.md). Throws ConfigError with the
+/// file and the link or joint: not a URDF, no base link, no axis. Also for an axis without limit or
+/// nozzle, a limit that is not positive, and a camera without a size.
 [[nodiscard]] ToolModel load_tool_model(const std::filesystem::path& path);
-/// The same from text; `origin` stands for the file in errors.
+/// The same from text; errors name `origin` as the file.
 [[nodiscard]] ToolModel parse_tool_model(std::string_view urdf, std::string_view origin);
 
 }  // namespace furrow::geometry

@@ -37,17 +37,17 @@ struct GnssPosition {
   std::optional<Eigen::Matrix2d> covariance = std::nullopt;
 };
 
-/// What became of a measurement.
+/// Result of adding a measurement.
 enum class Outcome : std::uint8_t {
   kUsed,
-  kUsedLate,   ///< put in at its own stamp, before measurements that came earlier
-  kGated,      ///< contradicts the state; kept out
-  kRecovered,  ///< the state was moved to repeated measurements that agree with each other
+  kUsedLate,   ///< inserted at its stamp, before measurements that arrived earlier
+  kGated,      ///< contradicts the state; rejected
+  kRecovered,  ///< the state was reset to repeated, consistent measurements
   kNoFix,      ///< a GNSS message without a position
-  kDuplicate,  ///< of a kind and stamp that is already there
-  kTooOld,     ///< before the history's beginning
+  kDuplicate,  ///< kind and stamp are known already
+  kTooOld,     ///< before the start of the history
   kInvalid,    ///< not finite, a covariance that is not positive, or a stamp out of bounds
-  kIgnored,    ///< of a kind that this estimator does not use
+  kIgnored,    ///< of a sensor that this estimator does not use
 };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
 

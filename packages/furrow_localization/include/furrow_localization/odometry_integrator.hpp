@@ -23,10 +23,10 @@ struct OdometryIntegratorParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// Dead reckoning: the mean of neighbouring wheel measurements is driven along a circular arc, the
-/// newest is held beyond it; the covariance grows by the measurements' variances. IMU and GNSS are
-/// ignored. A measurement older than the newest is counted as too old. A gap longer than
-/// `max_gap_s` is not driven across: the pose stays and motion begins again at the new measurement.
+/// Dead reckoning along circular arcs, with the mean of neighbouring wheel measurements, and the
+/// newest one after it. The covariance grows by the measurements' variances. IMU and GNSS are
+/// ignored. A measurement older than the newest is counted as too old. Across a gap longer than
+/// `max_gap_s` the pose stays, and motion continues at the new measurement.
 class OdometryIntegrator final : public PoseEstimator {
  public:
   /// Throws ConfigError when a parameter is out of its range.

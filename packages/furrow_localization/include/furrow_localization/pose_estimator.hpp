@@ -12,7 +12,7 @@
 
 namespace furrow::localization {
 
-/// Where the base frame B stands in the field frame F at an instant, and how it moves.
+/// Pose and twist of the base frame B in the field frame F at one time.
 struct PoseEstimate {
   Time stamp = {};
   geometry::Pose2 X_FB = {};
@@ -24,9 +24,9 @@ struct PoseEstimate {
   Eigen::Matrix2d twist_covariance = Eigen::Matrix2d::Zero();
 };
 
-/// Counts of one sensor's measurements by what became of them when they came.
+/// Counts of one sensor's measurements by Outcome.
 struct SensorCounts {
-  std::int64_t used = 0;  ///< in order, late and recovered ones together
+  std::int64_t used = 0;  ///< including late and recovered ones
   std::int64_t late = 0;
   std::int64_t gated = 0;
   std::int64_t recovered = 0;
@@ -56,13 +56,13 @@ struct LocalizationHealth {
   SensorCounts gnss;
 };
 
-/// A running estimate of the robot's pose. Measurements may come late and out of order; time comes
-/// with them. Not thread-safe.
+/// A running estimate of the robot's pose. Measurements may arrive late and out of order; their
+/// stamps are the only time. Not thread-safe.
 class PoseEstimator {
  public:
   virtual ~PoseEstimator() = default;
 
-  /// Starts anew at a known pose; forgets all measurements, keeps the counts. `covariance` is of
+  /// Restarts at a known pose; drops all measurements, keeps the counts. `covariance` is of
   /// (x_m, y_m, heading_rad). kInvalidArgument: not finite, or the covariance not positive
   /// semi-definite.
   [[nodiscard]] virtual Status reset(Time stamp, const geometry::Pose2& X_FB,
@@ -72,9 +72,9 @@ class PoseEstimator {
   virtual Outcome add(const ImuYawRate& measurement) = 0;
   virtual Outcome add(const GnssPosition& measurement) = 0;
 
-  /// The pose at `stamp`, from what is known now: within the history, or up to the extrapolation
-  /// limit beyond the newest measurement. kUnavailable: nothing measured yet. kStale: outside
-  /// those bounds.
+  /// The pose at `stamp`, from all measurements so far: within the history, or up to the
+  /// extrapolation limit after the newest measurement. kUnavailable: no measurement yet. kStale:
+  /// outside those bounds.
   [[nodiscard]] virtual Result<PoseEstimate> predict(Time stamp) const = 0;
 
   [[nodiscard]] virtual LocalizationHealth health(Time now) const = 0;

@@ -54,21 +54,21 @@ struct PoseFilterParameters {
 };
 
 /// Extended Kalman filter over (x, y, heading, speed, yaw rate, gyro bias, wheel speed scale, wheel
-/// curvature), for a robot that does not slide sideways: constant speed and yaw rate driven by
-/// white acceleration (Bar-Shalom, Li and Kirubarajan 2001). Wheels measure (1 + scale) * speed and
+/// curvature). Motion model: no sideways slip, constant speed and yaw rate driven by white
+/// acceleration (Bar-Shalom, Li and Kirubarajan 2001). Wheels measure (1 + scale) * speed and
 /// yaw rate + curvature * speed; the gyroscope measures yaw rate + bias; GNSS measures the antenna.
 /// Updates in Joseph form, each gated by chi-square of its innovation.
 ///
-/// Measurements of the last `history_s` are kept, and one that comes late is put in at its own
-/// stamp and what came after it is applied again: the estimate is that of the ordered sequence, to
-/// the bit. GNSS that contradicts the state is kept out until `gnss_recovery_repeats` in a row
-/// agree with each other, rates likewise for `rate_recovery_repeats`. A stamp further ahead than
-/// `max_jump_ahead_s` is not valid, until `gnss_recovery_repeats` measurements in a row say so:
-/// then motion begins again there. A clock that was set back needs a reset().
+/// The filter keeps the measurements of the last `history_s`. A late one is inserted at its stamp,
+/// and the later ones are applied again: the estimate is bit-identical to that of the ordered
+/// sequence. GNSS that contradicts the state is rejected until `gnss_recovery_repeats` consistent
+/// ones follow each other; rates likewise with `rate_recovery_repeats`. A stamp more than
+/// `max_jump_ahead_s` ahead is invalid, until `gnss_recovery_repeats` in a row agree: then the
+/// filter continues from there. A clock that was set back needs a reset().
 ///
 /// Without reset() the filter starts at the first measurement with the initial pose of its
-/// parameters. The heading must be known within a few times initial_heading_sigma_rad: one that is
-/// off by more than about 60 degrees is not found.
+/// parameters. The initial heading must be right to a few times initial_heading_sigma_rad; the
+/// filter does not recover from an error above about 60 degrees.
 class PoseFilter final : public PoseEstimator {
  public:
   /// Throws ConfigError when a parameter is out of its range.
