@@ -72,6 +72,26 @@ std::filesystem::path part_of(const std::filesystem::path& path) {
   return path.string() + ".part" + std::to_string(::getpid()) + "_" + std::to_string(calls++);
 }
 
+/// Writes the content into a file beside `path` and has `put_in_place` rename it: 0, or errno.
+template <class PutInPlace>
+Status write_beside(const std::filesystem::path& path, std::string_view content,
+                    PutInPlace put_in_place) {
+  std::error_code failure;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::filesystem::create_directories(folder, failure);
+  if (failure) return io_error(folder, "cannot make the folder", failure.value());
+  const std::filesystem::path part = part_of(path);
+  Status status = write_synced(part, content);
+  if (status.ok() && put_in_place(part) != 0) {
+    status = io_error(path, "cannot put in place", errno);
+  }
+  if (!status.ok()) {
+    std::filesystem::remove(part, failure);
+    return status;
+  }
+  return sync_folder(folder);
+}
+
 }  // namespace
 
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t max_bytes) {
@@ -106,20 +126,22 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t max
 }
 
 Status write_file_atomically(const std::filesystem::path& path, std::string_view content) {
-  std::error_code failure;
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::filesystem::create_directories(folder, failure);
-  if (failure) return io_error(folder, "cannot make the folder", failure.value());
-  const std::filesystem::path part = part_of(path);
-  Status status = write_synced(part, content);
-  if (status.ok() && std::rename(part.c_str(), path.c_str()) != 0) {
-    status = io_error(path, "cannot put in place", errno);
-  }
-  if (!status.ok()) {
-    std::filesystem::remove(part, failure);
-    return status;
-  }
-  return sync_folder(folder);
+  return write_beside(path, content, [&path](const std::filesystem::path& part) {
+    return std::rename(part.c_str(), path.c_str());
+  });
+}
+
+Result<bool> write_new_file(const std::filesystem::path& path, std::string_view content) {
+  bool exists = false;
+  const Status status = write_beside(path, content, [&](const std::filesystem::path& part) {
+    const int result =
+        ::renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
+    exists = result != 0 && errno == EEXIST;
+    return result;
+  });
+  if (exists) return false;
+  if (!status.ok()) return status.error();
+  return true;
 }
 
 }  // namespace furrow

@@ -67,6 +67,18 @@ TEST(File, FailureLeavesNothingBehind) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
+TEST(File, NewFileReplacesNothing) {
+  const auto path = scratch() / "deep" / "file.txt";
+  const auto first = write_new_file(path, "one");
+  ASSERT_TRUE(first.ok());
+  EXPECT_TRUE(*first);
+  const auto second = write_new_file(path, "two");
+  ASSERT_TRUE(second.ok());
+  EXPECT_FALSE(*second);
+  EXPECT_EQ(*read_file(path), "one");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
+}
+
 TEST(File, ReadErrorsAreTold) {
   const auto folder = scratch();
   EXPECT_EQ(read_file(folder / "none").error().code, ErrorCode::kNotFound);

@@ -2,30 +2,36 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 namespace furrow {
 namespace {
 
-TEST(Fixed, HasTheGivenNumberOfDecimals) {
-  EXPECT_EQ(fixed(1.5, 3), "1.500");
-  EXPECT_EQ(fixed(-2.0, 0), "-2");
-  EXPECT_EQ(fixed(123456.789, 1), "123456.8");
+TEST(Fixed, RoundsToTheDecimalsAskedFor) {
+  EXPECT_EQ(fixed(1.25, 1), "1.2");  // to even: 1.25 is exact in binary
+  EXPECT_EQ(fixed(1234.5678, 3), "1234.568");
+  EXPECT_EQ(fixed(7.0, 0), "7");
 }
 
-TEST(Fixed, ZeroHasNoSign) {
+TEST(Fixed, HasNoNegativeZero) {
   EXPECT_EQ(fixed(-0.001, 2), "0.00");
-  EXPECT_EQ(fixed(-0.0, 0), "0");
+  EXPECT_EQ(fixed(-0.01, 2), "-0.01");
 }
 
-TEST(Fixed, IsADashWhereTheNumberIsNotFinite) {
-  EXPECT_EQ(fixed(std::nan(""), 2), "-");
+TEST(Fixed, ShowsADashForAValueThatIsNotFinite) {
+  EXPECT_EQ(fixed(std::numeric_limits<double>::quiet_NaN(), 2), "-");
   EXPECT_EQ(fixed(-std::numeric_limits<double>::infinity(), 2), "-");
 }
 
 TEST(Fixed, TakesTheLargestNumbers) {
-  EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 0).size(), 309u);
+  EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 0).size(), 309U);
+}
+
+TEST(TextTable, AlignsTheFirstColumnLeftAndTheOthersRight) {
+  EXPECT_EQ(text_table({{"name", "n"}, {"a", "100"}, {"short"}}),
+            "name     n\n"
+            "a      100\n"
+            "short\n");
 }
 
 }  // namespace

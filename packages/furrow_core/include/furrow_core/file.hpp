@@ -22,4 +22,9 @@ namespace furrow {
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path,
                                            std::string_view content);
 
+/// As write_file_atomically, but replaces nothing: false, and nothing is written, when something of
+/// this name exists. Of several processes that write one path at a time, exactly one succeeds.
+[[nodiscard]] Result<bool> write_new_file(const std::filesystem::path& path,
+                                          std::string_view content);
+
 }  // namespace furrow
