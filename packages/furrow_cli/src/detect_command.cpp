@@ -45,13 +45,13 @@ int detect(DetectOptions options) {
   fs::create_directories(options.out, failure);
   if (failure) throw ConfigError(options.out + ": cannot make the folder: " + failure.message());
 
-  vision::Dataset found{.name = "detections of " + detectors.front().name,
-                        .classes = detector.classes(),
-                        .images = {}};
+  annotation::Dataset found{.name = "detections of " + detectors.front().name,
+                            .classes = detector.classes(),
+                            .images = {}};
   std::vector<std::vector<std::string>> table = {{"image", "plants", "crops", "weeds"}};
   int faults = 0;
   for (std::size_t i = 0; i < options.images.size(); ++i) {
-    vision::AnnotatedImage image;
+    annotation::AnnotatedImage image;
     image.path = options.images[i];
     const auto loaded =
         load_image(image, options.vision.resolution_mm_per_px.value_or(kDefaultResolution_mm));

@@ -36,9 +36,9 @@ constexpr std::size_t kBestPictures = 2, kWorstPictures = 3;
 constexpr std::size_t kLeastPlants = 5;
 
 /// Truth on the left, what was found on the right.
-std::string picture_of(const vision::AnnotatedImage& image,
+std::string picture_of(const annotation::AnnotatedImage& image,
                        const std::vector<vision::Instance>& found,
-                       const std::vector<vision::SubClass>& classes) {
+                       const std::vector<annotation::SubClass>& classes) {
   constexpr double kHeight_px = 420.0;
   constexpr double kGap = 0.01;  // of the width
   cv::Mat left = image.bgr.clone(), right = image.bgr.clone(), both;
@@ -113,7 +113,7 @@ void evaluate_on(EvaluationSet set, std::vector<NamedDetector>& detectors,
   std::vector<Running> running(detectors.size());
   ProgressBar bar(set.name);
   for (std::size_t i = 0; i < set.dataset.images.size(); ++i) {
-    vision::AnnotatedImage& image = set.dataset.images[i];
+    annotation::AnnotatedImage& image = set.dataset.images[i];
     const auto loaded = load_image(image, set.resolution_mm_per_px);
     if (!loaded.ok()) throw std::runtime_error(loaded.error().message);
     for (std::size_t k = 0; k < detectors.size(); ++k) {

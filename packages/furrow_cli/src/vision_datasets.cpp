@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-vision::Dataset value_or_throw(Result<vision::Dataset> dataset) {
+annotation::Dataset value_or_throw(Result<annotation::Dataset> dataset) {
   if (!dataset.ok()) throw ConfigError(dataset.error().message);
   return std::move(dataset).value();
 }
@@ -45,7 +45,7 @@ EvaluationSet render_evaluation_set(const fs::path& folder, std::int64_t images,
   if (!done.ok()) throw std::runtime_error(done.error().message);
   EvaluationSet set{"rendered", parameters.resolution_mm_per_px, {}};
   for (const char* part : {"evaluation.json", "validation.json", "train.json"}) {
-    vision::Dataset read = value_or_throw(annotation::read_coco(folder / part));
+    annotation::Dataset read = value_or_throw(annotation::read_coco(folder / part));
     set.dataset.classes = read.classes;
     for (auto& image : read.images) set.dataset.images.push_back(std::move(image));
   }

@@ -12,7 +12,7 @@ namespace furrow::cli {
 struct EvaluationSet {
   std::string name;  ///< "rendered", "cwfid", "carrot_weed", or that of the file
   double resolution_mm_per_px = 1.15;
-  vision::Dataset dataset;
+  annotation::Dataset dataset;
 };
 
 /// `images` pictures of this size with depth, drawn from `seed` with the plants of a species file

@@ -115,7 +115,7 @@ std::vector<NamedDetector> make_detectors(const VisionOptions& options) {
   return detectors;
 }
 
-Result<LoadedImage> load_image(vision::AnnotatedImage& image, double resolution_mm_per_px) {
+Result<LoadedImage> load_image(annotation::AnnotatedImage& image, double resolution_mm_per_px) {
   if (const Status loaded = vision::load_pixels(image); !loaded.ok()) return loaded.error();
   const double focal_px = 1000.0 / resolution_mm_per_px;
   LoadedImage result{

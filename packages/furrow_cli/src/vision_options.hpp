@@ -47,7 +47,7 @@ struct LoadedImage {
 /// Reads pixels and depth, where there is one, into image and result. The camera is taken to look
 /// straight down, at `resolution_mm_per_px` from 1 m above the ground: where there is depth, its
 /// median is the ground's distance.
-[[nodiscard]] Result<LoadedImage> load_image(vision::AnnotatedImage& image,
+[[nodiscard]] Result<LoadedImage> load_image(annotation::AnnotatedImage& image,
                                              double resolution_mm_per_px);
 
 }  // namespace furrow::cli

@@ -12,6 +12,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_simulation/photo_ground.hpp"
 #include "furrow_simulation/renderer.hpp"
 #include "photo_source.hpp"

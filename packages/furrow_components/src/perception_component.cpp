@@ -6,6 +6,7 @@
 #include "furrow_components/image_conversions.hpp"
 #include "furrow_geometry/camera.hpp"
 #include "furrow_graph/registry.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_vision/detector_choice.hpp"
 #include "furrow_vision/growth_stage.hpp"
 

@@ -9,6 +9,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_planning/harmfulness.hpp"
 #include "furrow_planning/observation_view.hpp"
 #include "lateral_axis.hpp"

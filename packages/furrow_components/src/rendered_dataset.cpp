@@ -82,8 +82,8 @@ field::FieldParameters draw_field(const RenderedDatasetParameters& p,
   return field;
 }
 
-std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& frame,
-                                                    const field::FieldModel& field) {
+std::vector<annotation::AnnotatedInstance> instances_of(const simulation::Frame& frame,
+                                                        const field::FieldModel& field) {
   std::vector<cv::Rect> boxes(frame.plants.size());
   std::vector<int> order(field.plants.size(), -1);
   for (std::size_t i = 0; i < frame.plants.size(); ++i) {
@@ -102,15 +102,15 @@ std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& fra
                 std::max(extent.bottom, v)};
     }
   }
-  std::vector<vision::AnnotatedInstance> instances;
+  std::vector<annotation::AnnotatedInstance> instances;
   for (std::size_t i = 0; i < frame.plants.size(); ++i) {
     const simulation::VisiblePlant& visible = frame.plants[i];
     const Extent& e = extents[i];
     if (visible.visible_px < kLeastVisible_px || e.right < 0) continue;
     const field::Plant& plant = field.plants[visible.plant_index];
-    vision::AnnotatedInstance instance;
-    instance.kind = plant.kind == field::PlantKind::kCrop ? vision::SubClassKind::kCrop
-                                                          : vision::SubClassKind::kWeed;
+    annotation::AnnotatedInstance instance;
+    instance.kind = plant.kind == field::PlantKind::kCrop ? annotation::SubClassKind::kCrop
+                                                          : annotation::SubClassKind::kWeed;
     instance.category = plant.species;
     instance.box_px = {e.left, e.top, e.right - e.left + 1, e.bottom - e.top + 1};
     instance.mask = frame.plant_index(instance.box_px) == static_cast<int>(visible.plant_index);
@@ -122,10 +122,9 @@ std::vector<vision::AnnotatedInstance> instances_of(const simulation::Frame& fra
 }
 
 /// The frames of one sequence; the last one is labelled.
-Result<std::vector<vision::AnnotatedImage>> render_sequence(const RenderedDatasetParameters& p,
-                                                            const field::SpeciesTable& species,
-                                                            std::uint64_t seed, std::int64_t index,
-                                                            const std::filesystem::path& folder) {
+Result<std::vector<annotation::AnnotatedImage>> render_sequence(
+    const RenderedDatasetParameters& p, const field::SpeciesTable& species, std::uint64_t seed,
+    std::int64_t index, const std::filesystem::path& folder) {
   Random random(seed, "dataset", static_cast<std::uint64_t>(index));
   const std::uint64_t image_seed = random.next();
   auto field = field::generate_field(draw_field(p, species, random), species, image_seed);
@@ -136,7 +135,7 @@ Result<std::vector<vision::AnnotatedImage>> render_sequence(const RenderedDatase
   appearance.threads = p.threads;
   simulation::Renderer renderer(std::move(field).value(), appearance, image_seed, species);
 
-  std::vector<vision::AnnotatedImage> images;
+  std::vector<annotation::AnnotatedImage> images;
   for (std::int64_t before = p.sequence_frames - 1; before >= 0; --before) {
     Shot shot = last;
     const double back_s = static_cast<double>(before) / p.frame_rate_hz;
@@ -151,7 +150,7 @@ Result<std::vector<vision::AnnotatedImage>> render_sequence(const RenderedDatase
     char name[32];
     std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(index));
     std::string file = name;
-    vision::AnnotatedImage image;
+    annotation::AnnotatedImage image;
     image.width_px = frame.bgr.cols;
     image.height_px = frame.bgr.rows;
     image.X_FB = shot.X_FB;
@@ -264,14 +263,14 @@ Status render_dataset(const RenderedDatasetParameters& parameters,
     return Error{ErrorCode::kIo,
                  folder.string() + ": cannot make the folder: " + failure.message()};
   }
-  vision::Dataset whole;
+  annotation::Dataset whole;
   whole.name = "rendered";
   for (const field::Species& entry : species.all()) {
     whole.classes.push_back({entry.name, entry.kind == field::PlantKind::kCrop
-                                             ? vision::SubClassKind::kCrop
-                                             : vision::SubClassKind::kWeed});
+                                             ? annotation::SubClassKind::kCrop
+                                             : annotation::SubClassKind::kWeed});
   }
-  std::array<vision::Dataset, 3> parts = {whole, whole, whole};
+  std::array<annotation::Dataset, 3> parts = {whole, whole, whole};
   const double images = static_cast<double>(parameters.images);
   const auto validation = static_cast<std::int64_t>(images * parameters.validation_share);
   const auto evaluation = static_cast<std::int64_t>(images * parameters.evaluation_share);

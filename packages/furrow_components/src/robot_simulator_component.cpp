@@ -10,6 +10,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_simulation/robot_motion.hpp"
 #include "furrow_simulation/sensors.hpp"
 #include "furrow_simulation/spray.hpp"

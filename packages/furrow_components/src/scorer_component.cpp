@@ -12,6 +12,7 @@
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/enums.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 
 namespace furrow::components {
 namespace {

@@ -13,6 +13,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_tracking/pose_correction.hpp"
 #include "furrow_tracking/tracker.hpp"
 
