@@ -7,6 +7,7 @@
 #include "furrow_graph/graph_check.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 #include "share.hpp"
 

@@ -4,6 +4,7 @@
 #include "console.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_graph/graph_check.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "graph_picture.hpp"
 #include "graph_setup.hpp"
 #include "share.hpp"

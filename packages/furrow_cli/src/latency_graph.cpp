@@ -8,6 +8,7 @@
 
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/builtin_interfaces.h"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/sensor_msgs.h"
 #include "furrow_msgs/topics.hpp"
 #include "share.hpp"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "furrow_core/statistics.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 #include "furrow_recording/dds_player.hpp"
 #include "furrow_recording/mcap_reader.hpp"

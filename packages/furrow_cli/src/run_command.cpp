@@ -16,6 +16,7 @@
 #include "furrow_components/run_record_conversion.hpp"
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_graph/runtime.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "graph_setup.hpp"
 #include "run_observer.hpp"
 #include "run_options.hpp"

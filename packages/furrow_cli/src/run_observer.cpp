@@ -1,5 +1,6 @@
 #include "run_observer.hpp"
 
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::cli {

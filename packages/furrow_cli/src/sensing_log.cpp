@@ -8,6 +8,7 @@
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 #include "graph_setup.hpp"
 #include "share.hpp"

@@ -9,6 +9,7 @@
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_field/field_model.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 
 namespace furrow::cli {
 

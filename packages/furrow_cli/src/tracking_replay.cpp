@@ -8,6 +8,7 @@
 
 #include "furrow_components/rendered_dataset.hpp"
 #include "furrow_graph/stamp.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_tracking/pose_correction.hpp"
 
 namespace furrow::cli {

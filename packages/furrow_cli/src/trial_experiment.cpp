@@ -13,6 +13,7 @@
 #include "furrow_graph/parameter_file.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_ledger/report.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "graph_setup.hpp"
 #include "run_observer.hpp"
 #include "run_summary.hpp"

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::cli {
