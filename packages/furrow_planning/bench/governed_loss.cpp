@@ -1,6 +1,6 @@
-// What a governed speed saves and what it costs: loss and mean speed of a robot at constant speeds
-// and of one that drives as the governor asks, over fields of several densities. Axes with the
-// times of real ones, a plan for each image at 3 Hz, 1.3 m of look-ahead, detection perfect.
+// Loss and mean speed of a robot at constant speeds, and of one that follows the speed governor,
+// over fields of several densities. Axes have real dwell and settle times. Each image at 3 Hz
+// triggers a plan; look-ahead 1.3 m; detection is perfect.
 // Usage: governed_loss [SEEDS [LENGTH_M]]
 #include <cstdio>
 #include <cstdlib>

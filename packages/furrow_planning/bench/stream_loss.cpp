@@ -1,6 +1,6 @@
 // Loss and replanning times of a planner over a stream of observations: a frame every 0.1 s at
-// 0.5 m/s, 1 m of look-ahead; beside it the optimum of sprays on stems with the whole field known,
-// and, where asked for, the loss that no placement of footprints can go below.
+// 0.5 m/s, 1 m of look-ahead. Printed beside it: the optimum of sprays on stems with the whole
+// field known. With `bound`: the loss below which no placement of footprints can go.
 // Usage: stream_loss PLANNER ASSIGNMENT [VIEW [SEEDS [LENGTH_M [KINEMATICS [bound]]]]]
 #include <algorithm>
 #include <chrono>

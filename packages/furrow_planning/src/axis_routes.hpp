@@ -19,13 +19,14 @@ class AxisRouter {
                      std::span<const std::uint32_t> members, std::vector<std::uint32_t>& chain) = 0;
 };
 
-/// Always the next target ahead that can be reached, of equal ones the one with less travel.
+/// Takes the next reachable target; among equal ones, the one with less travel.
 [[nodiscard]] std::unique_ptr<AxisRouter> make_greedy_router();
-/// nOTSP (named by Ahmadi et al. 2024; this reading is ours): at each step the best open route over
-/// the n nearest targets that can be reached, of which the first leg is taken.
+/// nOTSP (named by Ahmadi et al. 2024; this reading is ours): at each step, find the best open
+/// route over the n nearest reachable targets and take its first leg.
 [[nodiscard]] std::unique_ptr<AxisRouter> make_notsp_router(std::size_t n);
-/// Every sequence of the next n targets; of those with C > 0 (all Gamma >= rho) one of greatest K,
-/// then of greatest C (Ahmadi et al. 2024, eq. trajectoryProb, trajectoryCost); block after block.
+/// Block after block of n targets, the best of all their sequences: among those with C > 0 (all
+/// Gamma >= rho) the greatest K, then the greatest C (Ahmadi et al. 2024, eq. trajectoryProb,
+/// trajectoryCost).
 [[nodiscard]] std::unique_ptr<AxisRouter> make_permutation_router(std::size_t n, double omega);
 [[nodiscard]] std::unique_ptr<AxisRouter> make_exact_router();
 

@@ -10,13 +10,14 @@
 
 namespace furrow::planning {
 
-/// Plans sprays as discs that may be centred anywhere and treat several targets. Searches over the
-/// placements of SprayCandidates: from the exact joint routes of sprays on single stems, which also
-/// keep the travel low, by improving the axes one after the other, each best against what the
-/// others treat, until nothing is gained. Where that leaves many targets, a second search starts
-/// from nothing. Then the scores of those left are raised, round by round, and the axes improved
-/// again, so that the search leaves its local optimum towards them (breakout method: Morris 1993).
-/// What is best by the true scores counts. Plan::weight_bound counts every target that some
+/// Plans sprays as discs that may be centred anywhere and treat several targets. A local search
+/// over the placements of SprayCandidates:
+/// 1. Start from the exact joint routes of sprays on single stems, which also keep the travel low.
+/// 2. Improve one axis after the other, each optimal against the others, until nothing is gained.
+/// 3. Where many targets are missed, search a second time from empty routes.
+/// 4. Raise the scores of the missed targets and improve again, round by round, to leave the local
+///    optimum (breakout method: Morris 1993).
+/// The best plan by the true scores wins. Plan::weight_bound counts every target that some
 /// placement treats.
 class FootprintPlanner final : public RoutePlanner {
  public:

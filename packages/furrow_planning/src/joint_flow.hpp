@@ -13,18 +13,19 @@ namespace furrow::planning {
 void group_axes(const PreparedProblem& prepared, std::vector<std::vector<std::uint32_t>>& classes);
 
 /// The exact joint optimum of axes that agree in span and limits: disjoint chains, one for each
-/// axis, of greatest total score, and of those of least travel.
+/// axis, of greatest total score, and among those of least travel.
 ///
-/// Whether target k can follow target j depends only on their positions, the robot's speed and the
-/// axis's limits, not on the axis's offset along x, which shifts both crossings alike. So one flow
-/// network over the targets serves all axes; an axis enters it through an arc of its own, which
-/// carries its start and offset. Each unit of flow is one axis, a target's arc has capacity one,
-/// and the flow decomposes into chains by following it from each start.
+/// Target k can follow target j depending on their positions, the robot's speed and the axis's
+/// limits only. The axis's offset along x shifts both crossings alike. So one flow network over the
+/// targets serves all axes; an axis enters it through an arc of its own, which carries its start
+/// and offset. Each unit of flow is one axis, a target's arc has capacity one, and the flow
+/// decomposes into chains by following it from each start.
 ///
-/// To keep the number of arcs linear, moves over a way in which the axis could cross its whole span
-/// go over a bus: nodes in the order of x that any number of axes may ride. Travel over the bus is
-/// charged with the greatest move, so ties are broken by less travel exactly where each stop is
-/// followed by one within the nearest kNearby targets or within that way, else approximately.
+/// A bus keeps the number of arcs linear: nodes in the order of x that any number of axes may use.
+/// Moves over a distance in which the axis could cross its whole span go over the bus. Travel over
+/// the bus costs the greatest move. So ties are broken by travel exactly where each stop is
+/// followed by one of the kNearby nearest targets or by one within that distance, else
+/// approximately.
 class JointFlow {
  public:
   static constexpr std::size_t kNearby = 12;

@@ -10,11 +10,13 @@
 namespace furrow::planning {
 
 /// Plans all axes together. Exact when the axes in service agree in span and limits (offsets and
-/// states may differ). Axes that do not agree are planned class by class, each class exactly on
-/// what the others leave, in rounds until nothing is gained; Plan::weight_bound then comes from
-/// axes that have the widest span and the quickest limits of all, and says how far it may be off.
-/// The rounds start from the routes of that bound, cut to what each axis can do, and from nothing;
-/// the better outcome counts.
+/// states may differ).
+///
+/// Axes that differ are planned class by class, each class exactly on the targets that the others
+/// leave, in rounds until nothing is gained. Plan::weight_bound then comes from axes with the
+/// widest span and the fastest limits of all, and bounds the gap. The rounds start once from the
+/// routes of that bound, cut to the limits of each axis, and once from empty routes; the better
+/// result wins.
 class JointPlanner final : public RoutePlanner {
  public:
   explicit JointPlanner(const PlannerParameters& parameters) : parameters_(parameters) {}

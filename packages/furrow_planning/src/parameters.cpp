@@ -3,6 +3,13 @@
 namespace furrow::planning {
 
 void PlannerParameters::visit(ParameterVisitor& v) {
+  visit_method(v);
+  visit_motion(v);
+  visit_sprays(v);
+  visit_search(v);
+}
+
+void PlannerParameters::visit_method(ParameterVisitor& v) {
   v.visit({.name = "planner",
            .description = "route planner: greedy nearest feasible, nOTSP, the paper's permutation, "
                           "the exact best routes, or exact routes of footprints placed anywhere",
@@ -14,11 +21,14 @@ void PlannerParameters::visit(ParameterVisitor& v) {
           assignment);
   v.visit({.name = "view", .description = "observation model", .choices = {"rolling", "segment"}},
           view);
-  v.visit(
-      {.name = "kinematics",
-       .description = "of the axes: at full velocity at once, or rest to rest within the limits",
-       .choices = {"velocity", "trapezoid"}},
-      kinematics);
+}
+
+void PlannerParameters::visit_motion(ParameterVisitor& v) {
+  v.visit({.name = "kinematics",
+           .description =
+               "motion of the axes: full velocity at once, or rest to rest within the limits",
+           .choices = {"velocity", "trapezoid"}},
+          kinematics);
   v.visit({.name = "rho",
            .description = "cutoff on the feasibility Gamma of a move",
            .min = 0.5,
@@ -42,7 +52,7 @@ void PlannerParameters::visit(ParameterVisitor& v) {
           speed_mps);
   v.visit({.name = "dwell_s",
            .unit = "s",
-           .description = "time that the axis rests while it sprays",
+           .description = "time for which the axis rests during a spray",
            .min = 0.0,
            .max = 10.0},
           dwell_s);
@@ -52,6 +62,9 @@ void PlannerParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 10.0},
           settle_s);
+}
+
+void PlannerParameters::visit_sprays(ParameterVisitor& v) {
   v.visit({.name = "footprint_radius_m",
            .unit = "m",
            .description = "radius of a spray on the ground",
@@ -85,7 +98,7 @@ void PlannerParameters::visit(ParameterVisitor& v) {
       min_weight);
   v.visit({.name = "commit_s",
            .unit = "s",
-           .description = "a stop that departs within this time is no longer changed",
+           .description = "a stop that departs within this time is committed: it no longer changes",
            .min = 0.0,
            .max = 60.0},
           commit_s);
@@ -95,6 +108,9 @@ void PlannerParameters::visit(ParameterVisitor& v) {
            .min = 0.05,
            .max = 100.0},
           segment_length_m);
+}
+
+void PlannerParameters::visit_search(ParameterVisitor& v) {
   v.visit({.name = "notsp_targets",
            .description = "next targets among which nOTSP looks for a tour at each step",
            .min = 1,
@@ -107,8 +123,8 @@ void PlannerParameters::visit(ParameterVisitor& v) {
           permutation_targets);
   v.visit({.name = "improvement_rounds",
            .description =
-               "rounds over the axes in which the footprint planner improves its routes, and then "
-               "pursues what they leave",
+               "rounds in which the footprint planner improves its routes, and rounds in which it "
+               "then pursues missed targets",
            .min = 0,
            .max = 1000},
           improvement_rounds);

@@ -22,8 +22,8 @@ struct PassingSpray {
 /// Time from the departure of a move of `whole_m` until it has gone `part_m`.
 [[nodiscard]] double time_to_part_s(const Transition& transition, double part_m, double whole_m);
 
-/// A spray on the stem (within `radius_m` of it, as near as may be) that the nozzle fires during
-/// the leg, by a departure that leaves the margin of arrival untouched. None when there is none.
+/// A spray that the nozzle fires during the leg, as near to the stem as possible and within
+/// `radius_m`. The departure keeps the margin of arrival. Empty when there is no such spray.
 [[nodiscard]] std::optional<PassingSpray> passing_spray(const Transition& transition,
                                                         const Leg& leg, const Eigen::Vector2d& stem,
                                                         double radius_m);

@@ -99,6 +99,54 @@ Decision classify(const Target& target, const PlanningProblem& problem,
   return served ? Decision::kUnreachable : Decision::kAxisFault;
 }
 
+/// Writes a start for each axis. Returns the greatest move of any axis, for the scale of travel.
+double write_starts(const PlanningProblem& problem, const PlannerParameters& parameters,
+                    PreparedProblem& prepared) {
+  prepared.starts.clear();
+  double extent_m = 1e-6;
+  for (std::size_t a = 0; a < problem.axes.size(); ++a) {
+    const AxisSpec& axis = problem.axes[a];
+    const AxisState& state = problem.states[a];
+    prepared.starts.push_back(
+        {.x_m = std::max(state.free_from_x_m, problem.robot.x_m) + axis.offset_x_m,
+         .y_m = problem.robot.y_m + state.position_m,
+         .lower_y_m = problem.robot.y_m + axis.lower_m,
+         .upper_y_m = problem.robot.y_m + axis.upper_m,
+         .offset_x_m = axis.offset_x_m,
+         .usable = state.in_service,
+         .after_spray = state.after_spray,
+         .transition = Transition(parameters, prepared.speed_mps, axis),
+         .speeds = problem.speeds});
+    extent_m = std::max({extent_m, axis.upper_m - axis.lower_m, axis.upper_m - state.position_m,
+                         state.position_m - axis.lower_m});
+  }
+  return extent_m;
+}
+
+/// Writes the nodes in order and the decisions. Returns the greatest weight.
+double write_nodes(const PlanningProblem& problem, const PlannerParameters& parameters,
+                   double aim_reach_m, PreparedProblem& prepared, Plan& plan) {
+  prepared.nodes.clear();
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < problem.targets.size(); ++i) {
+    const Target& target = problem.targets[i];
+    Decision& decision = plan.decisions[i].decision;
+    if (decision == Decision::kDuplicate) continue;
+    decision = classify(target, problem, parameters, aim_reach_m, prepared.starts);
+    if (decision != Decision::kUnreachable) continue;
+    prepared.nodes.push_back({.x_m = target.p_F.x(),
+                              .y_m = target.p_F.y(),
+                              .weight = target.weight,
+                              .target = static_cast<std::uint32_t>(i)});
+    greatest = std::max(greatest, target.weight);
+  }
+  std::sort(prepared.nodes.begin(), prepared.nodes.end(), [](const Node& a, const Node& b) {
+    if (a.x_m != b.x_m) return a.x_m < b.x_m;
+    return a.y_m != b.y_m ? a.y_m < b.y_m : a.target < b.target;
+  });
+  return greatest;
+}
+
 }  // namespace
 
 double treat_radius_m(const PlannerParameters& parameters) {
@@ -119,52 +167,13 @@ Status prepare(const PlanningProblem& problem, const PlannerParameters& paramete
                        : parameters.speed_source == "measured" ? problem.robot.speed_mps
                                                                : parameters.speed_mps;
   prepared.robot_y_m = problem.robot.y_m;
-  prepared.starts.clear();
-  double extent_m = 1e-6;
-  for (std::size_t a = 0; a < problem.axes.size(); ++a) {
-    const AxisSpec& axis = problem.axes[a];
-    const AxisState& state = problem.states[a];
-    prepared.starts.push_back(
-        {.x_m = std::max(state.free_from_x_m, problem.robot.x_m) + axis.offset_x_m,
-         .y_m = problem.robot.y_m + state.position_m,
-         .lower_y_m = problem.robot.y_m + axis.lower_m,
-         .upper_y_m = problem.robot.y_m + axis.upper_m,
-         .offset_x_m = axis.offset_x_m,
-         .usable = state.in_service,
-         .after_spray = state.after_spray,
-         .transition = Transition(parameters, prepared.speed_mps, axis),
-         .speeds = problem.speeds});
-    extent_m = std::max({extent_m, axis.upper_m - axis.lower_m, axis.upper_m - state.position_m,
-                         state.position_m - axis.lower_m});
-  }
+  const double extent_m = write_starts(problem, parameters, prepared);
   plan.decisions.resize(problem.targets.size());
   for (std::size_t i = 0; i < problem.targets.size(); ++i) {
     plan.decisions[i] = {.id = problem.targets[i].id, .decision = Decision::kTreat, .axis = -1};
   }
   mark_duplicates(problem.targets, prepared.order, plan);
-  prepared.nodes.clear();
-  double greatest = 0.0;
-  for (std::size_t i = 0; i < problem.targets.size(); ++i) {
-    const Target& target = problem.targets[i];
-    Decision& decision = plan.decisions[i].decision;
-    if (decision == Decision::kDuplicate) {
-      continue;
-    }
-    decision = classify(target, problem, parameters, aim_reach_m, prepared.starts);
-    if (decision == Decision::kUnreachable) {
-      prepared.nodes.push_back({.x_m = target.p_F.x(),
-                                .y_m = target.p_F.y(),
-                                .weight = target.weight,
-                                .target = static_cast<std::uint32_t>(i)});
-      greatest = std::max(greatest, target.weight);
-    }
-  }
-  std::sort(prepared.nodes.begin(), prepared.nodes.end(), [](const Node& a, const Node& b) {
-    if (a.x_m != b.x_m) {
-      return a.x_m < b.x_m;
-    }
-    return a.y_m != b.y_m ? a.y_m < b.y_m : a.target < b.target;
-  });
+  const double greatest = write_nodes(problem, parameters, aim_reach_m, prepared, plan);
   prepared.scoring.scores_per_weight =
       greatest > 0.0 ? static_cast<double>(Scoring::kWeightLevels) / greatest : 0.0;
   prepared.scoring.levels_per_m = static_cast<double>(Scoring::kTravelLevels) / extent_m;

@@ -23,11 +23,13 @@ struct Cover {
   std::int64_t score = 0;  ///< of the node, less for a stem away from the centre
 };
 
-/// The placements that the footprint planner chooses among, by x: on each stem and shifted along
-/// the travel, where the robot's way buys the most time; for each pair of stems under one footprint
-/// the middle of the region that treats both and its ends along the travel; for each triple the
-/// centre of its smallest circle; and beside each stem that is too near to a crop or to the end of
-/// the span the nearest place that is allowed. None lies in a protection zone or treats nothing.
+/// The candidate placements of the footprint planner, by x. No candidate lies in a protection zone
+/// or treats nothing.
+/// - Each stem: on it, and shifted along the travel, where robot motion gains the most time.
+/// - Each pair of stems under one footprint: the middle of the region that treats both, and its
+///   ends along the travel.
+/// - Each triple: the centre of its smallest circle.
+/// - Each stem too near to a crop or to the end of the span: the nearest allowed place.
 class SprayCandidates {
  public:
   /// For targets with x >= `from_x_m`. `extra`: places to be offered as well (of the last plan).

@@ -29,6 +29,33 @@ std::int64_t SprayChainSolver::gain(const SprayCandidates& candidates, const Spr
   return sum;
 }
 
+void SprayChainSolver::follow_best(const SprayCandidates& candidates, const Start& start,
+                                   const Scoring& scoring,
+                                   const std::vector<std::uint16_t>& covered,
+                                   const std::vector<std::int64_t>& extra, std::int64_t alone,
+                                   Label& label) const {
+  const Spray& spray = candidates.sprays()[label.spray];
+  const double least_way_m = start.transition.needed_dx_m(0.0) - Transition::kSlack_m;
+  for (auto j = static_cast<std::int32_t>(labels_.size()) - 1; j >= 0; --j) {
+    const Label& from = labels_[static_cast<std::size_t>(j)];
+    if (from.best_to_here + alone <= label.value) break;
+    const double way_m = label.way_m - from.way_m;
+    if (way_m < least_way_m || from.value + alone <= label.value) continue;
+    const double dy_m = spray.y_m - from.y_m;
+    if (!start.transition.feasible(way_m, dy_m)) continue;
+    const std::int64_t before = from.value - scoring.travel(dy_m);
+    if (before + alone <= label.value) continue;
+    const std::int64_t value =
+        spray.x_m - from.x_m > 2.0 * radius_m_
+            ? before + alone
+            : before + gain(candidates, spray, j, covered, extra) * Scoring::kScore;
+    if (value > label.value) {
+      label.value = value;
+      label.previous = j;
+    }
+  }
+}
+
 std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
                                      const SprayCandidates& candidates, const Start& start,
                                      const std::vector<std::uint16_t>& covered,
@@ -38,7 +65,6 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
   labels_.clear();
   radius_m_ = candidates.radius_m();
   const Scoring& scoring = prepared.scoring;
-  const double least_way_m = start.transition.needed_dx_m(0.0) - Transition::kSlack_m;
   std::int64_t best = 0;
   std::int32_t best_end = -1;
   for (std::uint32_t s = 0; s < candidates.sprays().size(); ++s) {
@@ -54,32 +80,7 @@ std::int64_t SprayChainSolver::solve(const PreparedProblem& prepared,
     if (start.reaches(spray.x_m, spray.y_m)) {
       label.value = alone - scoring.travel(spray.y_m - start.y_m);
     }
-    for (auto j = static_cast<std::int32_t>(labels_.size()) - 1; j >= 0; --j) {
-      const Label& from = labels_[static_cast<std::size_t>(j)];
-      if (from.best_to_here + alone <= label.value) {
-        break;
-      }
-      const double way_m = label.way_m - from.way_m;
-      if (way_m < least_way_m || from.value + alone <= label.value) {
-        continue;
-      }
-      const double dy_m = spray.y_m - from.y_m;
-      if (!start.transition.feasible(way_m, dy_m)) {
-        continue;
-      }
-      const std::int64_t before = from.value - scoring.travel(dy_m);
-      if (before + alone <= label.value) {
-        continue;
-      }
-      const std::int64_t value =
-          spray.x_m - from.x_m > 2.0 * radius_m_
-              ? before + alone
-              : before + gain(candidates, spray, j, covered, extra) * Scoring::kScore;
-      if (value > label.value) {
-        label.value = value;
-        label.previous = j;
-      }
-    }
+    follow_best(candidates, start, scoring, covered, extra, alone, label);
     if (label.value <= 0) {
       continue;
     }

@@ -11,9 +11,9 @@
 
 namespace furrow::planning {
 
-/// Both observation models. They differ in what may be planned and when: the rolling view plans all
-/// targets that are not committed, whenever something changed; the segment view plans the targets
-/// of the stretches that have been seen completely since the last plan, once.
+/// Both observation models. The rolling view plans all uncommitted targets whenever something has
+/// changed. The segment view plans, once, the targets of the segments that have been seen
+/// completely since the last plan.
 class StreamPlanner final : public ObservationView {
  public:
   StreamPlanner(const PlannerParameters& parameters, std::vector<AxisSpec> axes);

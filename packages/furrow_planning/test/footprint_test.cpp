@@ -135,8 +135,8 @@ TEST(Footprint, PrefersStemsNearTheCentre) {
 }
 
 TEST(Footprint, FiresInPassing) {
-  // From rest to rest the outer two ask for 0.17 m of way and the margin of 10 mm; with a stop at
-  // the middle one it were 0.10 + 0.12 m and twice the margin, against 0.16 + 2 * 0.025 m at hand.
+  // Available: 0.16 + 2 * 0.025 m of robot travel. From rest to rest the outer two need 0.17 m and
+  // the margin of 10 mm. A stop at the middle one would need 0.10 + 0.12 m and twice the margin.
   auto problem = one_axis({{.id = 1, .p_F = {0.5, -0.6}, .weight = 1.0},
                            {.id = 2, .p_F = {0.57, -0.1}, .weight = 0.4},
                            {.id = 3, .p_F = {0.66, 0.6}, .weight = 1.0}});

@@ -273,9 +273,9 @@ struct Made {
   double position_m = 0.0;
 };
 
-/// Takes down the sprays of a robot that went from one place to the other in 20 ms, and counts
-/// those that their axis cannot have reached since its last one: a dwell of 10 ms and a move from
-/// rest to rest at 50 m/s2 that stays below 5 m/s; 5 ms are forgiven.
+/// Notes the sprays of a robot that drove from one place to the other in 20 ms. Counts the sprays
+/// that their axis cannot have reached since its last one: a dwell of 10 ms and a move from rest to
+/// rest at 50 m/s2 below 5 m/s, with a tolerance of 5 ms.
 int note_sprays(const ObservationView& view, double from_m, double to_m, double time_s,
                 std::vector<Made>& made) {
   int late = 0;

@@ -13,8 +13,8 @@
 
 namespace furrow::planning {
 
-/// What finally became of a target. Each target that was ever given is reported once, also when
-/// it was never planned.
+/// Final outcome of a target. Every target is reported exactly once, also when it was never
+/// planned.
 struct TargetOutcome {
   TargetId id = 0;
   Decision decision = Decision::kUnreachable;
@@ -22,11 +22,11 @@ struct TargetOutcome {
   Eigen::Vector2d aim_F = Eigen::Vector2d::Zero();  ///< kTreat only
 };
 
-/// Plans over a stream of observations (Ahmadi et al. 2024, obsModel). Axes are taken to rest at
-/// their last stop until the next one's departure; a stop that is due to depart within commit_s is
-/// committed: no later plan changes it. The rolling view keeps its plan and plans again only when
-/// a target, a crop or an axis has changed; the segment view plans each stretch of row once, when
-/// all of it has been seen, as if it were alone. Not thread-safe.
+/// Plans over a stream of observations (Ahmadi et al. 2024, obsModel). An axis rests at its last
+/// stop until it departs for the next one. A stop that departs within commit_s is committed: no
+/// later plan changes it. The rolling view keeps its plan and replans only when a target, a crop or
+/// an axis has changed. The segment view plans each segment of the row once, in isolation, when all
+/// of it has been seen. Not thread-safe.
 class ObservationView {
  public:
   virtual ~ObservationView() = default;
@@ -35,7 +35,7 @@ class ObservationView {
   /// weight; the target is then reported as kInvalid. A target that is committed or finished keeps
   /// its outcome.
   virtual Status update(const Target& target) = 0;
-  /// Forgets a target that proved to be none. False when it is unknown, committed or finished.
+  /// Removes a false target. Returns false when it is unknown, committed or finished.
   virtual bool remove(TargetId id) = 0;
   virtual Status update_protected(const ProtectedPlant& plant) = 0;
   virtual bool remove_protected(TargetId id) = 0;
@@ -43,13 +43,13 @@ class ObservationView {
   /// Takes an axis out of service or puts it back. Uncommitted and unfinished stops of a failed
   /// axis go to the others with the next replan. Out-of-range axis: an error.
   virtual Status set_in_service(std::size_t axis, bool in_service) = 0;
-  /// Where an axis really rests, when it is not at its last stop.
+  /// Measured rest position of an axis that is not at its last stop.
   virtual Status set_axis_position(std::size_t axis, double position_m) = 0;
 
   /// Moves the robot. All plants with x < `seen_until_x_m` are taken as seen. Error: not finite,
   /// speed <= 0 with the measured speed in use, or backwards (the state is then kept).
   virtual Status advance(const RobotState& robot, double seen_until_x_m) = 0;
-  /// Brings the plan up to date. Returns whether it was planned anew.
+  /// Updates the plan. Returns whether it was replanned.
   [[nodiscard]] virtual Result<bool> replan() = 0;
   /// Routes from the robot's present position on, committed stops first. Its decisions cover the
   /// targets that are not finished.
@@ -58,15 +58,15 @@ class ObservationView {
   /// From now on plans hold for a robot that drives like this, not at a constant speed. Error: the
   /// segment view, or sprays in passing.
   virtual Status set_speeds(const SpeedProfile& speeds) = 0;
-  /// What would be left for want of time, by x, if the robot drove like this. Changes nothing;
-  /// valid until the next call. Error: as set_speeds(), or before the first advance.
+  /// Targets that a plan at these speeds leaves for lack of time, by x. Changes nothing. The span
+  /// is valid until the next call. Error: as set_speeds(), or before the first advance.
   [[nodiscard]] virtual Result<std::span<const LeftTarget>> left_at(const SpeedProfile& speeds) = 0;
   /// The robot's x at the last committed spray; where it is now, when there is none.
   [[nodiscard]] virtual double committed_until_x_m() const = 0;
 
-  /// Appends what has been finished since the last call: sprays passed, targets passed by.
+  /// Appends the targets finished since the last call: sprayed or passed.
   virtual void take_outcomes(std::vector<TargetOutcome>& outcomes) = 0;
-  /// Way of each axis along the stops that it has passed.
+  /// Distance travelled by each axis over the stops that it has passed.
   [[nodiscard]] virtual const std::vector<double>& travel_m() const = 0;
 };
 

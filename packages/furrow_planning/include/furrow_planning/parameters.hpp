@@ -7,7 +7,7 @@
 
 namespace furrow::planning {
 
-/// How the routes are planned. The defaults are the best planner and the paper's figures.
+/// Parameters of route planning. Defaults: the best planner, and the paper's figures.
 struct PlannerParameters {
   std::string planner = "footprint";
   std::string assignment = "joint";
@@ -34,6 +34,12 @@ struct PlannerParameters {
   std::int64_t max_targets = 20000;
 
   void visit(ParameterVisitor& v);
+
+ private:
+  void visit_method(ParameterVisitor& v);
+  void visit_motion(ParameterVisitor& v);
+  void visit_sprays(ParameterVisitor& v);
+  void visit_search(ParameterVisitor& v);
 };
 
 }  // namespace furrow::planning

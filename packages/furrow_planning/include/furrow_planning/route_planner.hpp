@@ -17,9 +17,8 @@ class RoutePlanner {
   virtual ~RoutePlanner() = default;
 
   /// Fills `plan`. Targets that cannot or should not be treated are decisions in the plan, not
-  /// errors. An error, which leaves the plan empty: no axes, states that do not match the axes,
-  /// numbers of robot or axes that are not finite, a speed that is not positive, more targets than
-  /// max_targets.
+  /// errors. Errors leave the plan empty: no axes, a different number of states and axes, a
+  /// non-finite number of robot or axes, a speed <= 0, more targets than max_targets.
   [[nodiscard]] virtual Status plan(const PlanningProblem& problem, Plan& plan) = 0;
   [[nodiscard]] virtual std::string_view name() const = 0;
 };

@@ -25,41 +25,41 @@ struct SpeedGovernorParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// What a plan would leave for want of time, by x, if the robot drove like this.
+/// Targets that a plan at these speeds leaves for lack of time, by x.
 using LeftAtSpeeds = std::function<Result<std::span<const LeftTarget>>(const SpeedProfile& speeds)>;
 
-/// What the governor needs to know of the robot and of the plan in force.
+/// State of the robot and of the current plan, as the governor needs it.
 struct GovernedRobot {
   double x_m = 0.0;        ///< of the base, in F
   double speed_mps = 0.0;  ///< measured
-  /// Sprays up to here are fixed for the speeds decided last: until then it does not accelerate
-  /// beyond them.
+  /// Sprays up to here are fixed for the speeds decided last; the robot does not exceed them there.
   double committed_until_x_m = 0.0;
-  std::int64_t targets = 0;  ///< that a plan is for, by which the number of plans is bounded
+  std::int64_t targets = 0;  ///< in a plan; bounds the number of plans
 };
 
-/// Decides how fast the robot may drive so that the axes keep up with the weeds ahead, as a tool
-/// that asks its tractor for a ground speed. It has the weeds ahead planned for the row's own speed
-/// and looks where the plan leaves a weed that a plan for the least speed would not: there, from a
-/// lead before the foremost axis meets the weed until the hindmost has passed it, the robot is to
-/// be a step slower; and so on, until none is left so. In between the robot brakes and accelerates
-/// within its limit. What no speed saves slows nothing. Not thread-safe.
+/// Requests a robot speed at which the axes keep up with the weeds ahead, as an implement that
+/// requests a ground speed from its tractor. Not thread-safe.
+///
+/// The governor plans the weeds ahead at the row speed. A weed is saved by a lower speed if that
+/// plan leaves it and a plan at the minimum speed treats it. For such a weed the speed is lowered
+/// by one step, from a lead before the foremost axis reaches it until the rearmost axis has passed
+/// it. This repeats until no such weed is left. Between the steps the robot brakes and accelerates
+/// within its limit. A weed that no speed saves does not lower the speed.
 class SpeedGovernor {
  public:
-  /// `row_speed_mps`: what the robot drives at where nothing holds it back. `front_m`, `rear_m`: x
-  /// of the foremost and of the hindmost axis in the base frame. Throws ConfigError for values out
-  /// of range, or a least speed above the row's.
+  /// `row_speed_mps`: speed where no weed requires a lower one. `front_m`, `rear_m`: x of the
+  /// foremost and of the rearmost axis in the base frame. Throws ConfigError for values out of
+  /// range, or a minimum speed above the row speed.
   SpeedGovernor(const SpeedGovernorParameters& parameters, double row_speed_mps, double front_m,
                 double rear_m);
 
-  /// Looks at the weeds ahead anew. An error of `left_at`, or a robot whose numbers are not finite,
-  /// leaves the speeds as they were.
+  /// Decides the speeds again. An error of `left_at` or a non-finite robot state keeps the speeds.
   Status consider(const GovernedRobot& robot, const LeftAtSpeeds& left_at);
 
-  /// The speed to ask for at this place: the row's before the first look.
+  /// The speed to request at this place; the row speed before the first consider().
   [[nodiscard]] double request_mps(double robot_x_m) const;
-  /// How the robot will drive, to plan for: as it is asked, or faster by what the measured speed
-  /// was above that at the last look.
+  /// The expected speed, for planning: the requested one, plus the excess of the measured speed at
+  /// the last consider().
   [[nodiscard]] const SpeedProfile& expected() const { return expected_; }
 
  private:

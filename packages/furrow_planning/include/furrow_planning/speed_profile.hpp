@@ -4,8 +4,8 @@
 
 namespace furrow::planning {
 
-/// How fast the robot will be along the row: positive speeds at equal steps of its x, linear in
-/// between, the first one held before and the last one beyond.
+/// Speed of the robot along the row: positive speeds at equal steps of its x, linear between them,
+/// constant before the first and after the last.
 class SpeedProfile {
  public:
   /// Throws ConfigError when a number is not finite, the step or a speed is not positive, or there

@@ -13,15 +13,19 @@ struct BoundEffort {
   std::int64_t iterations = 100;  ///< of the subgradient method
 };
 
-/// A weight that no plan can exceed, wherever its sprays are centred: so that the gap of the
-/// footprint planner is known. Placements are relaxed to the cells of a grid (a cell treats every
-/// stem within the radius of any of its points, and allows every move that any of its points
-/// allows; trapezoid moves to velocity moves). That each stem counts once is priced instead of
-/// enforced (Lagrange multipliers, subgradient method: Held and Karp 1971), and each axis takes the
-/// chain that is then worth most. A stem that a chain passes several times is paid each time less
-/// its price, which is why the bound lies far above where axes are saturated, and at everything
-/// where they are not; there the planner comes close to it. For evaluation, not for the replan
-/// path: time grows with iterations * targets / cell_m^2. Error: as RoutePlanner::plan.
+/// Upper bound on the weight of any plan, wherever its sprays are centred. It bounds the optimality
+/// gap of the footprint planner. For evaluation only: time grows with
+/// iterations * targets / cell_m^2. Error: as RoutePlanner::plan.
+///
+/// Relaxations:
+/// - Placements become cells of a grid. A cell treats every stem within the radius of any of its
+///   points, and allows every move that any of its points allows.
+/// - Trapezoid moves become velocity moves.
+/// - "Each stem counts once" is priced instead of enforced (Lagrange multipliers, subgradient
+///   method: Held and Karp 1971). Each axis then takes its best chain.
+///
+/// A chain that passes a stem several times collects its price each time. So the bound is loose
+/// where axes are saturated. Where they are not, it is the weight of all targets and nearly tight.
 [[nodiscard]] Result<double> footprint_weight_bound(const PlanningProblem& problem,
                                                     const PlannerParameters& parameters,
                                                     const BoundEffort& effort = {});
