@@ -17,7 +17,7 @@ if [[ ! -f tools/colcon/$profile.yaml ]]; then
   exit 2
 fi
 export COLCON_DEFAULTS_FILE=$PWD/tools/colcon/$profile.yaml
-# By itself colcon lets make start no job while the load is as high as the number of cores, which its
-# own jobs keep it at: a third of the time would be lost.
+# By default colcon lets make start no job while the load is as high as the number of cores. Its own
+# jobs keep the load there, and a third of the time would be lost.
 export MAKEFLAGS=${MAKEFLAGS:--j$(nproc)}
 exec colcon build "$@" </dev/null

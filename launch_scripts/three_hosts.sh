@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the weeding graph on three hosts: vision, planning, actuation. The hosts are network
-# namespaces of this machine, joined by a bridge, each with an address, a host name and a shared
-# memory of its own; they and the bridge are made and removed here, and nothing leaves the machine.
+# namespaces of this machine, joined by a bridge. Each has its own address, host name and shared
+# memory. The script makes and removes them and the bridge; nothing leaves the machine.
 #
 # usage: three_hosts.sh [--discovery multicast|static_peers|discovery_server] [option of furrow up]...
 #

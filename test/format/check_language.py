@@ -22,7 +22,7 @@ from sentences import count_words, neutralize, split_sentences
 MAX_WORDS = 30
 FOLDERS = ("packages", "test", "tools", "launch_scripts", "idl", "params", "urdf", "docs", "models",
            "ros2", ".ci")
-GENERATED = {"docs/reference/topics.md", "docs/reference/parameters.md"}
+GENERATED = {f"docs/reference/{name}.md" for name in ("topics", "parameters", "command_line")}
 GLOSSARY = "docs/glossary.md"
 BASELINE = "test/format/language_baseline.txt"
 BASELINE_HEAD = """\

@@ -91,9 +91,8 @@ void add_graph_command(CLI::App& app, int& exit_code) {
   add_graph_options(show_command, *options);
   show_command->add_option("--svg", options->svg, "draw it into this file instead");
   show_command->callback([options, &exit_code] { exit_code = show(*options); });
-  command->add_subcommand("topics", "Prints the table of topics (docs/topics.md).")->callback([] {
-    std::cout << msgs::topics_markdown();
-  });
+  command->add_subcommand("topics", "Prints the table of topics (docs/reference/topics.md).")
+      ->callback([] { std::cout << msgs::topics_markdown(); });
 }
 
 }  // namespace furrow::cli

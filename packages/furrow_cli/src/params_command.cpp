@@ -91,7 +91,7 @@ void add_params_command(CLI::App& app, int& /*exit_code*/) {
   CLI::App* describe_command = command->add_subcommand(
       "describe", "Lists the parameters of the component classes, with defaults and ranges.");
   describe_command->add_option("class", options->class_name, "one class; all when left out");
-  describe_command->add_flag("--markdown", options->markdown, "as docs/parameters.md");
+  describe_command->add_flag("--markdown", options->markdown, "as docs/reference/parameters.md");
   describe_command->callback([options] { describe(options->class_name, options->markdown); });
 }
 

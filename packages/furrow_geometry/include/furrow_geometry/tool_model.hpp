@@ -52,9 +52,9 @@ struct ToolModel {
   std::vector<CameraModel> cameras;
 };
 
-/// Reads a URDF with Furrow's extension elements (docs/urdf.md). Throws ConfigError with the
-/// file and the link or joint: not a URDF, no base link, no axis. Also for an axis without limit or
-/// nozzle, a limit that is not positive, and a camera without a size.
+/// Reads a URDF with Furrow's extension elements (docs/reference/urdf.md). Throws ConfigError
+/// with the file and the link or joint: not a URDF, no base link, no axis. Also for an axis without
+/// limit or nozzle, a limit that is not positive, and a camera without a size.
 [[nodiscard]] ToolModel load_tool_model(const std::filesystem::path& path);
 /// The same from text; errors name `origin` as the file.
 [[nodiscard]] ToolModel parse_tool_model(std::string_view urdf, std::string_view origin);

@@ -170,11 +170,11 @@ struct Diagnostics {
 
 }  // namespace topics
 
-/// The table, in the order of docs/topics.md.
+/// The table, in the order of docs/reference/topics.md.
 [[nodiscard]] std::span<const Topic> all_topics();
 /// The row with this name, or null.
 [[nodiscard]] const Topic* find_topic(std::string_view name);
-/// docs/topics.md.
+/// docs/reference/topics.md.
 [[nodiscard]] std::string topics_markdown();
 
 }  // namespace furrow::msgs
