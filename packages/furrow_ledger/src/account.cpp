@@ -14,11 +14,11 @@ namespace {
 using field::Plant;
 using field::PlantKind;
 
-/// What sprays did to one plant. Indices into the sorted sprays; kNobody where there is none.
+/// What sprays did to one plant. Indices into the sorted sprays; kNoIndex where there is none.
 struct Sprayed {
-  std::size_t landed = kNobody;  ///< the nearest whose footprint took the stem
+  std::size_t landed = kNoIndex;  ///< the nearest whose footprint took the stem
   double landed_m = 0.0;
-  std::size_t aimed = kNobody;  ///< the nearest of those aimed at the plant
+  std::size_t aimed = kNoIndex;  ///< the nearest of those aimed at the plant
   double aimed_m = 0.0;
   double error_m = 0.0;  ///< of that one's placement
 };
@@ -83,7 +83,7 @@ class Accountant {
 
  private:
   void index_decisions() {
-    decision_of_track_.assign(tracks_.size(), kNobody);
+    decision_of_track_.assign(tracks_.size(), kNoIndex);
     std::unordered_map<std::int64_t, std::size_t> latest;
     for (std::size_t d = 0; d < decisions_.size(); ++d) latest[decisions_[d].track_id] = d;
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
@@ -96,7 +96,7 @@ class Accountant {
 
   static void keep_nearest(std::size_t& best, double& best_m, std::size_t spray,
                            double distance_m) {
-    if (best != kNobody && best_m <= distance_m) return;
+    if (best != kNoIndex && best_m <= distance_m) return;
     best = spray;
     best_m = distance_m;
   }
@@ -126,7 +126,7 @@ class Accountant {
         const auto track = track_of_id_.find(id);
         if (track == track_of_id_.end()) continue;
         const std::size_t plant = association_.plant_of_track[track->second];
-        if (plant != kNobody) aim_at(plant, spray.aim_F_m - tracks_[track->second].p_F_m);
+        if (plant != kNoIndex) aim_at(plant, spray.aim_F_m - tracks_[track->second].p_F_m);
       }
       if (spray.track_ids.empty()) {
         grid.for_each_within(
@@ -139,12 +139,12 @@ class Accountant {
   /// The last word on a plant: on its own track, or else the latest on a duplicate.
   [[nodiscard]] const Decision* decision_on(std::size_t plant) const {
     const std::size_t track = association_.track_of_plant[plant];
-    if (track == kNobody) return nullptr;
-    if (decision_of_track_[track] != kNobody) return &decisions_[decision_of_track_[track]];
+    if (track == kNoIndex) return nullptr;
+    if (decision_of_track_[track] != kNoIndex) return &decisions_[decision_of_track_[track]];
     const Decision* latest = nullptr;
     for (const std::size_t duplicate : association_.duplicates[plant]) {
       const std::size_t d = decision_of_track_[duplicate];
-      if (d == kNobody) continue;
+      if (d == kNoIndex) continue;
       if (latest == nullptr || decisions_[d].time > latest->time) latest = &decisions_[d];
     }
     return latest;
@@ -155,11 +155,11 @@ class Accountant {
     const auto beyond = [](const std::optional<std::pair<double, double>>& span, double v) {
       return span && (v < span->first || v > span->second);
     };
-    if (sprayed_[plant].aimed != kNobody) return Reason::kPlacement;
+    if (sprayed_[plant].aimed != kNoIndex) return Reason::kPlacement;
     if (beyond(info_.reach_y_m, p_F.y())) return Reason::kOutside;
     if (beyond(info_.passed_x_m, p_F.x())) return Reason::kEndOfRun;
     const std::size_t track = association_.track_of_plant[plant];
-    if (track == kNobody) return Reason::kUndetected;
+    if (track == kNoIndex) return Reason::kUndetected;
     if (!tracks_[track].confirmed) return Reason::kUnconfirmed;
     if (tracks_[track].kind == PlantKind::kCrop) return Reason::kMisclassified;
     if (decision == nullptr || decision->action == Action::kNone) return Reason::kUnreachable;
@@ -181,7 +181,7 @@ class Accountant {
       if (decision->action == Action::kTreat) row.axis = decision->axis;
     }
     const Sprayed& sprayed = sprayed_[i];
-    const bool landed = sprayed.landed != kNobody;
+    const bool landed = sprayed.landed != kNoIndex;
     if (plant.kind == PlantKind::kCrop) {
       row.outcome = landed ? Outcome::kHit : Outcome::kSpared;
     } else if (landed) {
@@ -190,13 +190,13 @@ class Accountant {
     } else {
       row.reason = cause(i, decision);
     }
-    if (landed || sprayed.aimed != kNobody) {
+    if (landed || sprayed.aimed != kNoIndex) {
       const Spray& spray = sprays_[landed ? sprayed.landed : sprayed.aimed];
       row.axis = spray.axis;
       row.sprayed = spray.time;
       row.spray_distance_m = landed ? sprayed.landed_m : sprayed.aimed_m;
     }
-    if (const std::size_t track = association_.track_of_plant[i]; track != kNobody) {
+    if (const std::size_t track = association_.track_of_plant[i]; track != kNoIndex) {
       row.track_id = tracks_[track].id;
       row.track_kind = tracks_[track].kind;
       row.track_distance_m = association_.distance_m[i];
@@ -219,7 +219,7 @@ class Accountant {
     }
     for (std::size_t i = 0; i < plants_.size(); ++i) {
       const Sprayed& sprayed = sprayed_[i];
-      if (plants_[i].kind != PlantKind::kWeed || sprayed.aimed == kNobody) continue;
+      if (plants_[i].kind != PlantKind::kWeed || sprayed.aimed == kNoIndex) continue;
       ledger_.placement_errors_mm.push_back(sprayed.error_m * 1e3);
     }
     std::sort(aim_mm.begin(), aim_mm.end());

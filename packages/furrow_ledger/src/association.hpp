@@ -9,13 +9,13 @@
 
 namespace furrow::ledger {
 
-inline constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+inline constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
 
 /// Which track stands for which plant.
 struct Association {
-  std::vector<std::size_t> track_of_plant;           ///< index of the track; kNobody
+  std::vector<std::size_t> track_of_plant;           ///< index of the track; kNoIndex
   std::vector<double> distance_m;                    ///< of that track to the plant
-  std::vector<std::size_t> plant_of_track;           ///< also of duplicates; kNobody
+  std::vector<std::size_t> plant_of_track;           ///< also of duplicates; kNoIndex
   std::vector<std::vector<std::size_t>> duplicates;  ///< per plant, further tracks near it
   std::int64_t tracks_without_plant = 0;
 };

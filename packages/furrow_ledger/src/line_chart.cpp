@@ -36,6 +36,34 @@ std::vector<LineChart::Point> shown(const LineChart& chart, const LineChart::Ser
   return points;
 }
 
+void draw_series(Markup& svg, const LineChart::Series& series,
+                 const std::vector<LineChart::Point>& points, const Scale& x, const Scale& y,
+                 const std::string& color) {
+  std::string path;
+  for (const LineChart::Point& point : points) {
+    path += px(x.px(point.x)) + "," + px(y.px(point.y.value)) + " ";
+  }
+  svg.empty("polyline", {{"points", path},
+                         {"fill", "none"},
+                         {"stroke", color},
+                         {"stroke-width", "2"},
+                         {"stroke-linejoin", "round"},
+                         {"stroke-dasharray", series.dashed ? "6 4" : "none"}});
+  for (const LineChart::Point& point : points) {
+    if (point.y.low && point.y.high) {
+      draw_error_bar(svg, x.px(point.x), y.px(*point.y.low), y.px(*point.y.high), color);
+    }
+    svg.open("circle", {{"cx", px(x.px(point.x))},
+                        {"cy", px(y.px(point.y.value))},
+                        {"r", "3.5"},
+                        {"fill", series.dashed ? "#ffffff" : color},
+                        {"stroke", color},
+                        {"stroke-width", "1.5"}});
+    svg.element("title", series.name + ": " + number(point.x, 4) + ", " + number(point.y.value, 4));
+    svg.close();
+  }
+}
+
 }  // namespace
 
 std::string to_svg(const LineChart& chart) {
@@ -73,31 +101,7 @@ std::string to_svg(const LineChart& chart) {
   draw_x_axis(svg, area, x, chart.x_label);
 
   for (std::size_t s = 0; s < lines.size(); ++s) {
-    const std::string& color = legend[s].color;
-    std::string path;
-    for (const LineChart::Point& point : lines[s]) {
-      path += px(x.px(point.x)) + "," + px(y.px(point.y.value)) + " ";
-    }
-    svg.empty("polyline", {{"points", path},
-                           {"fill", "none"},
-                           {"stroke", color},
-                           {"stroke-width", "2"},
-                           {"stroke-linejoin", "round"},
-                           {"stroke-dasharray", chart.series[s].dashed ? "6 4" : "none"}});
-    for (const LineChart::Point& point : lines[s]) {
-      if (point.y.low && point.y.high) {
-        draw_error_bar(svg, x.px(point.x), y.px(*point.y.low), y.px(*point.y.high), color);
-      }
-      svg.open("circle", {{"cx", px(x.px(point.x))},
-                          {"cy", px(y.px(point.y.value))},
-                          {"r", "3.5"},
-                          {"fill", chart.series[s].dashed ? "#ffffff" : color},
-                          {"stroke", color},
-                          {"stroke-width", "1.5"}});
-      svg.element("title", chart.series[s].name + ": " + number(point.x, 4) + ", " +
-                               number(point.y.value, 4));
-      svg.close();
-    }
+    draw_series(svg, chart.series[s], lines[s], x, y, legend[s].color);
   }
   return svg.finish();
 }

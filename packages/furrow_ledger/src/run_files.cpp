@@ -10,7 +10,7 @@ Status write_run_files(const std::filesystem::path& folder, const Ledger& ledger
       {"ledger.csv", to_csv(ledger)},
       {"map.svg", map_svg(ledger, record)},
       {"report.html", report_html(ledger, record)},
-      // Last: who finds the summary finds the rest as well.
+      // Written last: a folder with a summary is complete.
       {"summary.json", to_json(ledger.summary)}};
   for (const auto& [name, content] : files) {
     if (Status written = write_file_atomically(folder / name, content); !written) return written;

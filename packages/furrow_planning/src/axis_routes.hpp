@@ -24,9 +24,9 @@ class AxisRouter {
 /// nOTSP (named by Ahmadi et al. 2024; this reading is ours): at each step, find the best open
 /// route over the n nearest reachable targets and take its first leg.
 [[nodiscard]] std::unique_ptr<AxisRouter> make_notsp_router(std::size_t n);
-/// Block after block of n targets, the best of all their sequences: among those with C > 0 (all
-/// Gamma >= rho) the greatest K, then the greatest C (Ahmadi et al. 2024, eq. trajectoryProb,
-/// trajectoryCost).
+/// Takes block after block of n targets and, of all sequences of a block with C > 0 (all
+/// Gamma >= rho), the one with the greatest K, then the greatest C. See Ahmadi et al. 2024,
+/// eq. trajectoryProb and trajectoryCost.
 [[nodiscard]] std::unique_ptr<AxisRouter> make_permutation_router(std::size_t n, double omega);
 [[nodiscard]] std::unique_ptr<AxisRouter> make_exact_router();
 

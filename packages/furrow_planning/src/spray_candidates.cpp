@@ -145,8 +145,8 @@ void SprayCandidates::offer_pair(const Node& a, const Node& b) {
   if (d <= 0.0) {
     return;
   }
-  // The lens in which both stems are within the radius ends, along the travel, at the end of one
-  // circle if that lies in the other, else at a crossing of the two.
+  // Both stems are within the radius in a lens. Along the travel it ends at the end of one circle
+  // if that lies in the other, else at a crossing of the two.
   const double h = std::sqrt(std::max(0.0, r * r - 0.25 * d * d));
   const double cross_x = h * std::abs(dy) / d;
   const double cross_y = -h * dx / d * (dy < 0.0 ? -1.0 : 1.0);

@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Order of the heap: nearest first, then lowest column.
+constexpr auto later = [](const auto& a, const auto& b) {
+  return a.distance != b.distance ? a.distance > b.distance : a.column > b.column;
+};
+
 }  // namespace
 
 void SparseAssignment::build_edges(std::int32_t rows, std::int32_t columns,
@@ -52,69 +57,66 @@ std::span<const std::int32_t> SparseAssignment::solve(std::int32_t rows, std::in
   return column_of_row_;
 }
 
-void SparseAssignment::augment(std::int32_t start_row) {
-  const auto later = [](const Label& a, const Label& b) {
-    return a.distance != b.distance ? a.distance > b.distance : a.column > b.column;
-  };
+void SparseAssignment::relax_edges(std::int32_t row, double row_distance) {
+  for (std::int32_t e = first_edge_[row]; e < first_edge_[row + 1]; ++e) {
+    const std::int32_t column = edges_[e].column;
+    if (settled_[column] != 0) continue;
+    const double distance = row_distance + edges_[e].cost - row_price_[row] - column_price_[column];
+    if (distance >= distance_[column]) continue;
+    if (distance_[column] == kInfinity) touched_.push_back(column);
+    distance_[column] = distance;
+    previous_row_[column] = row;
+    heap_.push_back({distance, column});
+    std::push_heap(heap_.begin(), heap_.end(), later);
+  }
+}
+
+void SparseAssignment::drop_outdated() {
+  while (!heap_.empty() && (settled_[heap_.front().column] != 0 ||
+                            heap_.front().distance > distance_[heap_.front().column])) {
+    std::pop_heap(heap_.begin(), heap_.end(), later);
+    heap_.pop_back();
+  }
+}
+
+SparseAssignment::PathEnd SparseAssignment::find_path(std::int32_t start_row) {
   touched_.clear();
   settled_order_.clear();
   heap_.clear();
 
   // Each row may also end alone, at a column of its own that costs unmatched_cost.
-  double alone_distance = kInfinity;
-  std::int32_t alone_row = start_row;
-  std::int32_t end_column = kUnmatched;
-  double end_distance = 0.0;
+  PathEnd alone{kUnmatched, start_row, kInfinity};
   std::int32_t row = start_row;
   double row_distance = 0.0;
   while (true) {
-    const double alone = row_distance + unmatched_cost_ - row_price_[row];
-    if (alone < alone_distance) {
-      alone_distance = alone;
-      alone_row = row;
-    }
-    for (std::int32_t e = first_edge_[row]; e < first_edge_[row + 1]; ++e) {
-      const std::int32_t column = edges_[e].column;
-      if (settled_[column] != 0) continue;
-      const double distance =
-          row_distance + edges_[e].cost - row_price_[row] - column_price_[column];
-      if (distance >= distance_[column]) continue;
-      if (distance_[column] == kInfinity) touched_.push_back(column);
-      distance_[column] = distance;
-      previous_row_[column] = row;
-      heap_.push_back({distance, column});
-      std::push_heap(heap_.begin(), heap_.end(), later);
-    }
-    while (!heap_.empty() && (settled_[heap_.front().column] != 0 ||
-                              heap_.front().distance > distance_[heap_.front().column])) {
-      std::pop_heap(heap_.begin(), heap_.end(), later);
-      heap_.pop_back();
-    }
-    if (heap_.empty() || alone_distance <= heap_.front().distance) {
-      end_distance = alone_distance;
-      break;
-    }
+    const double alone_distance = row_distance + unmatched_cost_ - row_price_[row];
+    if (alone_distance < alone.distance) alone = {kUnmatched, row, alone_distance};
+    relax_edges(row, row_distance);
+    drop_outdated();
+    if (heap_.empty() || alone.distance <= heap_.front().distance) return alone;
     const Label nearest = heap_.front();
     if (row_of_column_[nearest.column] == kUnmatched) {
-      end_column = nearest.column;
-      end_distance = nearest.distance;
-      break;
+      return {nearest.column, start_row, nearest.distance};
     }
     settled_[nearest.column] = 1;
     settled_order_.push_back(nearest.column);
     row = row_of_column_[nearest.column];
     row_distance = nearest.distance;
   }
+}
 
-  row_price_[start_row] += end_distance;
+void SparseAssignment::augment(std::int32_t start_row) {
+  const PathEnd end = find_path(start_row);
+  row_price_[start_row] += end.distance;
   for (const std::int32_t column : settled_order_) {
-    const double slack = end_distance - distance_[column];
+    const double slack = end.distance - distance_[column];
     column_price_[column] -= slack;
     row_price_[row_of_column_[column]] += slack;
   }
+  std::int32_t end_column = end.column;
   if (end_column == kUnmatched) {
-    end_column = column_of_row_[alone_row];
-    column_of_row_[alone_row] = kUnmatched;
+    end_column = column_of_row_[end.row];
+    column_of_row_[end.row] = kUnmatched;
   }
   // Along the path each row gives its column to the row before it and takes the next one.
   while (end_column != kUnmatched) {

@@ -165,12 +165,10 @@ void TrackingEvaluation::score_identities(TrackingScores& scores) const {
   scores.idf1 = points > 0.0 ? 2.0 * true_positives / points : 1.0;
 }
 
-void TrackingEvaluation::score_hota(TrackingScores& scores) const {
-  std::vector<double> truth_frames(truth_ids_.size(), 0.0);
-  std::vector<double> track_frames(track_ids_.size(), 0.0);
-  std::map<IdPair, double> potential;
-  double truth_points = 0.0;
-  double track_points = 0.0;
+TrackingEvaluation::IdentityCounts TrackingEvaluation::count_identities() const {
+  IdentityCounts counts;
+  counts.truth_frames.resize(truth_ids_.size(), 0.0);
+  counts.track_frames.resize(track_ids_.size(), 0.0);
   for (const Frame& frame : frames_) {
     std::vector<double> truth_sum(frame.truth.size(), 0.0);
     std::vector<double> track_sum(frame.tracks.size(), 0.0);
@@ -179,19 +177,19 @@ void TrackingEvaluation::score_hota(TrackingScores& scores) const {
       track_sum[pair.track] += pair.similarity;
     }
     for (const Pair& pair : frame.pairs) {
-      potential[{frame.truth[pair.truth], frame.tracks[pair.track]}] +=
+      counts.potential[{frame.truth[pair.truth], frame.tracks[pair.track]}] +=
           pair.similarity / (truth_sum[pair.truth] + track_sum[pair.track] - pair.similarity);
     }
-    for (const std::int32_t id : frame.truth) truth_frames[id] += 1.0;
-    for (const std::int32_t id : frame.tracks) track_frames[id] += 1.0;
-    truth_points += static_cast<double>(frame.truth.size());
-    track_points += static_cast<double>(frame.tracks.size());
+    for (const std::int32_t id : frame.truth) counts.truth_frames[id] += 1.0;
+    for (const std::int32_t id : frame.tracks) counts.track_frames[id] += 1.0;
+    counts.truth_points += static_cast<double>(frame.truth.size());
+    counts.track_points += static_cast<double>(frame.tracks.size());
   }
-  if (truth_points == 0.0 && track_points == 0.0) {
-    scores.hota = scores.detection_accuracy = scores.association_accuracy = 1.0;
-    return;
-  }
+  return counts;
+}
 
+std::vector<std::map<TrackingEvaluation::IdPair, double>> TrackingEvaluation::match_at_thresholds(
+    const IdentityCounts& counts) const {
   std::vector<std::map<IdPair, double>> matches(kThresholds);
   SparseAssignment assignment;
   std::vector<CandidatePair> candidates;
@@ -200,9 +198,9 @@ void TrackingEvaluation::score_hota(TrackingScores& scores) const {
     std::map<IdPair, double> similarity_of;
     for (const Pair& pair : frame.pairs) {
       const IdPair ids = {frame.truth[pair.truth], frame.tracks[pair.track]};
-      const double common = potential[ids];
+      const double common = counts.potential.at(ids);
       const double alignment =
-          common / (truth_frames[ids.first] + track_frames[ids.second] - common);
+          common / (counts.truth_frames[ids.first] + counts.track_frames[ids.second] - common);
       candidates.push_back({pair.truth, pair.track, -alignment * pair.similarity});
       similarity_of[{pair.truth, pair.track}] = pair.similarity;
     }
@@ -218,14 +216,25 @@ void TrackingEvaluation::score_hota(TrackingScores& scores) const {
       }
     }
   }
-  for (const auto& at_threshold : matches) {
+  return matches;
+}
+
+void TrackingEvaluation::score_hota(TrackingScores& scores) const {
+  const IdentityCounts counts = count_identities();
+  if (counts.truth_points == 0.0 && counts.track_points == 0.0) {
+    scores.hota = scores.detection_accuracy = scores.association_accuracy = 1.0;
+    return;
+  }
+  for (const auto& at_threshold : match_at_thresholds(counts)) {
     double true_positives = 0.0;
     double association = 0.0;
     for (const auto& [ids, count] : at_threshold) {
       true_positives += count;
-      association += count * count / (truth_frames[ids.first] + track_frames[ids.second] - count);
+      association += count * count /
+                     (counts.truth_frames[ids.first] + counts.track_frames[ids.second] - count);
     }
-    const double detection = true_positives / (truth_points + track_points - true_positives);
+    const double detection =
+        true_positives / (counts.truth_points + counts.track_points - true_positives);
     if (true_positives > 0.0) association /= true_positives;
     scores.detection_accuracy += detection / kThresholds;
     scores.association_accuracy += association / kThresholds;

@@ -3,19 +3,29 @@
 namespace furrow::tracking {
 
 void TrackerParameters::visit(ParameterVisitor& v) {
+  visit_association(v);
+  visit_lifetime(v);
+  visit_limits(v);
+  visit_position(v);
+  visit_class(v);
+  visit_pose(v);
+  rows.visit(v);
+}
+
+void TrackerParameters::visit_association(ParameterVisitor& v) {
   v.visit({.name = "association",
            .description = "how observations are matched to tracks",
            .choices = {"dynamic_radius", "fixed_radius", "iou"}},
           association);
   v.visit({.name = "min_radius_m",
            .unit = "m",
-           .description = "dynamic_radius: least radius that a plant is given for matching",
+           .description = "dynamic_radius: least matching radius of a plant",
            .min = 1e-4,
            .max = 1.0},
           min_radius_m);
   v.visit({.name = "max_radius_m",
            .unit = "m",
-           .description = "dynamic_radius: greatest radius that a plant is given for matching",
+           .description = "dynamic_radius: greatest matching radius of a plant",
            .min = 1e-4,
            .max = 1.0},
           max_radius_m);
@@ -44,6 +54,9 @@ void TrackerParameters::visit(ParameterVisitor& v) {
   v.visit(
       {.name = "min_iou", .description = "iou: least overlap of a match", .min = 1e-3, .max = 1.0},
       min_iou);
+}
+
+void TrackerParameters::visit_lifetime(ParameterVisitor& v) {
   v.visit({.name = "birth_score",
            .description = "least score of an observation that begins a track",
            .min = 0.0,
@@ -55,17 +68,17 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .max = 1.0},
           match_score);
   v.visit({.name = "confirm_matches",
-           .description = "views after which a track is believed",
+           .description = "matches after which a track is confirmed",
            .min = 1,
            .max = 100},
           confirm_matches);
   v.visit({.name = "tentative_misses",
-           .description = "misses in a row that end a track not yet confirmed",
+           .description = "misses in a row after which a tentative track is deleted",
            .min = 1,
            .max = 100},
           tentative_misses);
   v.visit({.name = "confirmed_misses",
-           .description = "misses in a row that end a confirmed track",
+           .description = "misses in a row after which a confirmed track is deleted",
            .min = 1,
            .max = 1000},
           confirmed_misses);
@@ -76,19 +89,22 @@ void TrackerParameters::visit(ParameterVisitor& v) {
        .min = 0.0,
        .max = 1.0},
       visible_margin_m);
+}
+
+void TrackerParameters::visit_limits(ParameterVisitor& v) {
   v.visit({.name = "keep_distance_m",
            .unit = "m",
-           .description = "distance from the robot beyond which a track ends",
+           .description = "distance from the robot beyond which a track is deleted",
            .min = 0.5,
            .max = 1000.0},
           keep_distance_m);
   v.visit({.name = "max_tracks",
-           .description = "greatest number of living tracks; beyond it the farthest end",
+           .description = "greatest number of tracks; above it the farthest ones are deleted",
            .min = 1,
            .max = 100000},
           max_tracks);
   v.visit({.name = "max_observations",
-           .description = "observations of one view that are looked at",
+           .description = "greatest number of observations used from one view",
            .min = 1,
            .max = 100000},
           max_observations);
@@ -98,9 +114,12 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1.0},
           duplicate_ratio);
+}
+
+void TrackerParameters::visit_position(ParameterVisitor& v) {
   v.visit({.name = "position_floor_m",
            .unit = "m",
-           .description = "least standard deviation that a track's position may claim",
+           .description = "lower bound of the standard deviation of a track's position",
            .min = 0.0,
            .max = 0.1},
           position_floor_m);
@@ -124,11 +143,15 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 10.0},
           max_pose_sigma_m);
-  v.visit({.name = "outlier_sigma",
-           .description = "standard deviations from which on an observation's weight is reduced",
-           .min = 1.0,
-           .max = 100.0},
-          outlier_sigma);
+  v.visit(
+      {.name = "outlier_sigma",
+       .description = "standard deviations beyond which the weight of an observation is reduced",
+       .min = 1.0,
+       .max = 100.0},
+      outlier_sigma);
+}
+
+void TrackerParameters::visit_class(ParameterVisitor& v) {
   v.visit({.name = "class_floor",
            .description = "least probability that one view may give a class",
            .min = 1e-6,
@@ -146,7 +169,7 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .max = 1.0},
           class_truncated_weight);
   v.visit({.name = "class_max_log_odds",
-           .description = "bound of the collected evidence of class",
+           .description = "bound on the accumulated log odds of the class",
            .min = 0.1,
            .max = 30.0},
           class_max_log_odds);
@@ -155,17 +178,19 @@ void TrackerParameters::visit(ParameterVisitor& v) {
            .min = 1.0,
            .max = 1000.0},
           size_memory_views);
+}
+
+void TrackerParameters::visit_pose(ParameterVisitor& v) {
   v.visit({.name = "follow_pose",
-           .description = "whether tracks go along when the pose is corrected, as by GNSS after "
-                          "an outage"},
+           .description = "whether tracks move with corrections of the pose, such as the first "
+                          "GNSS fix after an outage"},
           follow_pose);
   v.visit({.name = "follow_behind_m",
            .unit = "m",
-           .description = "how far behind the robot's base tracks do so no longer",
+           .description = "distance behind the robot's base from which tracks keep their place",
            .min = -100.0,
            .max = 100.0},
           follow_behind_m);
-  rows.visit(v);
 }
 
 }  // namespace furrow::tracking

@@ -253,8 +253,8 @@ TEST(TrackerOnARow, AStepWithTwoHundredPlantsInViewTakesLessThanTwoMilliseconds)
 #endif
 }
 
-// Dead reckoning knows less and less of where the robot is, yet one view from the next to the
-// millimetre: what it does not know is common to both, and must not make plants run together.
+// The pose error of dead reckoning grows, while the motion between two views is known to a
+// millimetre. The common error must not merge neighbouring plants.
 TEST(TrackerOnARow, DriftThatViewsShareDoesNotMixPlants) {
   const Row row(11, {});
   Tracker tracker;

@@ -34,7 +34,7 @@ View view_at(double t_s) {
 
 using Observations = std::vector<Observation>;
 
-TEST(Tracker, ATrackBeginsIsBelievedCoastsAndEnds) {
+TEST(Tracker, ATrackIsBornConfirmedCoastsAndEnds) {
   Tracker tracker;
   UpdateSummary summary = tracker.update(view_at(0.2), Observations{seen_at(0.1, 0.2)});
   EXPECT_EQ(summary.born, 1);
@@ -64,7 +64,7 @@ TEST(Tracker, ATrackBeginsIsBelievedCoastsAndEnds) {
   EXPECT_TRUE(tracker.ended().empty());
 }
 
-TEST(Tracker, AMatchForgivesEarlierMisses) {
+TEST(Tracker, AMatchResetsTheMisses) {
   Tracker tracker;
   double t_s = 0.0;
   for (int round = 0; round < 10; ++round) {
@@ -123,7 +123,7 @@ TEST(Tracker, PositionIsTheMeanOfEqualViews) {
   EXPECT_NEAR(tracker.tracks()[0].covariance_F_m2(0, 0), 1e-6 / 4.0, 1e-15);
 }
 
-TEST(Tracker, ThePosesErrorWidensWhatIsFarFromTheRobot) {
+TEST(Tracker, PoseErrorWidensTheCovarianceOfDistantPlants) {
   Tracker tracker;
   View view = view_at(0.2);
   view.pose_covariance(2, 2) = 1e-4;  // 0.01 rad
@@ -148,7 +148,7 @@ TEST(Tracker, OneWrongViewDoesNotDecideTheClass) {
   EXPECT_EQ(track.plant_class(), PlantClass::kWeed);
 }
 
-TEST(Tracker, CollectedEvidenceIsBoundedSoThatItCanTurn) {
+TEST(Tracker, ClassEvidenceIsBoundedSoThatItCanBeReversed) {
   Tracker tracker;
   double t_s = 0.0;
   Observation observation = seen_at(0.0, 0.0);
@@ -179,7 +179,7 @@ TEST(Tracker, SpeciesAreVoted) {
   EXPECT_NEAR(tracker.tracks()[0].species_votes[1], 1.9, 1e-6);
 }
 
-TEST(Tracker, ASizeCutByTheBorderGivesWayToTheWholeOne) {
+TEST(Tracker, AWholeSizeReplacesATruncatedOne) {
   Tracker tracker;
   Observation cut = seen_at(0.0, 0.0, 0.008);
   cut.truncated = true;
@@ -214,7 +214,7 @@ TEST(Tracker, TheRadiusDecidesHowFarAPlantMayMove) {
   EXPECT_EQ(matches("iou", 0.005, 0.02), 0);
 }
 
-TEST(Tracker, OverlapIsThatOfTheFootprintsWhereBothHaveOne) {
+TEST(Tracker, IouUsesFootprintsWhereBothHaveOne) {
   TrackerParameters parameters;
   parameters.association = "iou";
   Tracker tracker(parameters);
@@ -241,7 +241,7 @@ TEST(Tracker, TwoObservationsOfOnePlantMakeOneTrack) {
   EXPECT_EQ(summary.born, 2);
 }
 
-TEST(Tracker, ATrackThatWasMissedJoinsItsTwin) {
+TEST(Tracker, AMissedTrackMergesWithItsDuplicate) {
   TrackerParameters parameters;
   parameters.uncertainty_gain = 0.0;
   parameters.outlier_sigma = 100.0;
@@ -263,7 +263,7 @@ TEST(Tracker, ATrackThatWasMissedJoinsItsTwin) {
   EXPECT_EQ(tracker.observation_track_ids()[0], id);
 }
 
-TEST(Tracker, WeakObservationsMatchButDoNotBegin) {
+TEST(Tracker, WeakObservationsMatchButStartNoTrack) {
   Tracker tracker;
   Observation weak = seen_at(0.0, 0.0);
   weak.score = 0.4;
@@ -275,7 +275,7 @@ TEST(Tracker, WeakObservationsMatchButDoNotBegin) {
   EXPECT_EQ(tracker.update(view_at(0.8), Observations{weak}).weak, 1);
 }
 
-TEST(Tracker, HoldsNoMoreTracksThanItMayAndKeepsTheNearest) {
+TEST(Tracker, KeepsTheNearestTracksWhenFull) {
   TrackerParameters parameters;
   parameters.max_tracks = 10;
   parameters.max_observations = 25;
@@ -290,7 +290,7 @@ TEST(Tracker, HoldsNoMoreTracksThanItMayAndKeepsTheNearest) {
   for (const Track& track : tracker.tracks()) EXPECT_LT(track.p_F_m.x(), 0.305);
 }
 
-TEST(Tracker, RejectsObservationsThatAreNotValidAndTakesTheRest) {
+TEST(Tracker, RejectsInvalidObservationsAndUsesTheOthers) {
   Observations observations(14, seen_at(0.0, 0.0));
   observations[0].p_F_m.x() = kNan;
   observations[1].p_F_m.y() = std::numeric_limits<double>::infinity();
@@ -339,7 +339,7 @@ TEST(Tracker, AViewWithAFaultChangesNothing) {
   EXPECT_EQ(tracker.update(view_at(1.1), {}).fault, ViewFault::kNone);
 }
 
-TEST(Tracker, FinishHandsOverEveryTrack) {
+TEST(Tracker, FinishEndsEveryTrack) {
   Tracker tracker;
   tracker.update(view_at(0.2), Observations{seen_at(0.0, 0.0), seen_at(0.5, 0.0)});
   tracker.finish();

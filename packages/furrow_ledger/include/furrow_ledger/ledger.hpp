@@ -73,11 +73,11 @@ struct Summary {
   std::int64_t sprays = 0;
   std::int64_t sprays_without_weed = 0;  ///< no weed's stem within the partial radius
   std::vector<std::int64_t> sprays_by_axis;
-  /// How far a spray's centre lies from where it should be, over the weeds that one was aimed at,
-  /// hit or not (the nearest such spray): its offset from the stem, less the offset from the track
-  /// that was meant. So errors of vision, localization and actuation are in it, and the offset by
-  /// which a spray takes two weeds or spares a crop is not. In mm; the deciles from minimum to
-  /// maximum are eleven, or none.
+  /// Placement error: offset of the spray's centre from the stem, minus the planned offset of its
+  /// aim from the track. One sample for each weed with a spray aimed at it, hit or not (the nearest
+  /// such spray). It contains the errors of vision, localization and actuation. It does not contain
+  /// the planned offset by which a spray treats two weeds or spares a crop. In mm; eleven deciles
+  /// from minimum to maximum, or none.
   std::optional<double> placement_error_p50_mm;
   std::optional<double> placement_error_p95_mm;
   std::vector<double> placement_error_deciles_mm;
@@ -107,12 +107,12 @@ struct Ledger {
   std::vector<double> placement_errors_mm;  ///< the samples behind the summary, ascending
 };
 
-/// Tells what became of every plant.
+/// Accounts for every plant.
 ///
-/// Tracks go to plants one to one, nearest first within the association radius, confirmed tracks
-/// before others; what is left over near a plant is its duplicate. A spray is aimed at a plant when
-/// it names the plant's track or a duplicate of it; one that names none, when its aim is within the
-/// partial radius. A missed weed takes the first cause that holds:
+/// Tracks are associated with plants one to one, nearest first within the association radius,
+/// confirmed tracks before others. Remaining tracks near a plant are its duplicates. A spray is
+/// aimed at a plant when it names the plant's track or a duplicate of it; one that names none, when
+/// its aim is within the partial radius. A missed weed takes the first cause that holds:
 ///   1 placement: a spray was aimed at it;
 ///   2 outside, then end_of_run: beyond RunInfo's reach_y_m, passed_x_m;
 ///   3 undetected: no track; unconfirmed; misclassified: its track says crop;
@@ -124,7 +124,7 @@ struct Ledger {
 [[nodiscard]] Result<Ledger> account(const field::FieldModel& truth, const RunRecord& record,
                                      const AccountParameters& parameters = {});
 
-/// The account of a run whose true plants nobody knows: every confirmed track stands for a plant
+/// The account of a run without ground truth: every confirmed track stands for a plant
 /// where the tracker saw it. Outcomes are then the robot's own estimate, and summary.against_truth
 /// is false. `strip` gives name, source, size and rows; its plants are not used.
 [[nodiscard]] Result<Ledger> account_tracks(const field::FieldModel& strip, const RunRecord& record,

@@ -7,9 +7,9 @@
 
 namespace furrow::ledger {
 
-/// The field from above as an SVG document: strips of the row one below the other, the direction of
-/// travel to the right, y (left of the robot) up; plants to scale coloured by outcome, routes by
-/// axis, sprays with their footprints to scale, misses with the initial of their cause.
+/// The field from above as an SVG document: strips of the row one below the other, travel to the
+/// right, y (left of the robot) up. Plants are to scale and coloured by outcome, routes by axis.
+/// Sprays show their footprints to scale. A missed weed carries the initial of its reason.
 [[nodiscard]] std::string map_svg(const Ledger& ledger, const RunRecord& record);
 
 /// The run's report as one self-contained HTML document.

@@ -9,11 +9,11 @@ namespace furrow::planning {
 /// Checks a plan against its problem, from the definitions alone; shares no code with the planners.
 /// Time O(n log n), cheap enough for every plan. The error names the axis, stop or target.
 ///
-/// Checks of a route: order along the travel, axis in service and within its span, first stop
-/// reachable from the axis's state, Gamma >= rho between consecutive stops by the logistic
-/// function. Checks of a stop: aim agrees with axis and robot, no protection zone is entered.
-/// Checks of a target: treated at most once, within the footprint of its stop, by its decision.
-/// Checks of the plan: one decision for each target; sums of weight and travel.
+/// - Route: order along the travel, axis in service and within its span, first stop reachable from
+///   the axis's state, Gamma >= rho between consecutive stops.
+/// - Stop: aim agrees with axis and robot; no protection zone is entered.
+/// - Target: treated at most once, within the footprint of its stop, by its decision.
+/// - Plan: one decision for each target; sums of weight and travel.
 class PlanChecker {
  public:
   explicit PlanChecker(const PlannerParameters& parameters) : parameters_(parameters) {}

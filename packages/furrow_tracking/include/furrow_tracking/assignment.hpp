@@ -14,8 +14,8 @@ struct CandidatePair {
 };
 
 /// Optimal one-to-one assignment on a sparse, gated cost matrix. Minimizes the sum of the costs of
-/// the matched pairs plus `unmatched_cost` for each row that stays alone; so a pair is never
-/// matched at more than `unmatched_cost`. Shortest augmenting paths with dual prices (Jonker and
+/// the matched pairs plus `unmatched_cost` for each unmatched row. So no pair is matched at more
+/// than `unmatched_cost`. Shortest augmenting paths with dual prices (Jonker and
 /// Volgenant 1987), on the listed pairs only: a search never leaves the connected component of its
 /// row. Buffers are kept from call to call.
 class SparseAssignment {
@@ -39,6 +39,15 @@ class SparseAssignment {
   };
   void build_edges(std::int32_t rows, std::int32_t columns, std::span<const CandidatePair> pairs,
                    double unmatched_cost);
+  /// End of an augmenting path: a free column, or kUnmatched and the row that stays alone.
+  struct PathEnd {
+    std::int32_t column;
+    std::int32_t row;
+    double distance;
+  };
+  void relax_edges(std::int32_t row, double row_distance);
+  void drop_outdated();
+  [[nodiscard]] PathEnd find_path(std::int32_t start_row);
   void augment(std::int32_t start_row);
 
   double unmatched_cost_ = 0.0;

@@ -8,10 +8,10 @@
 
 namespace furrow::tracking {
 
-/// A plant's silhouette on the ground: cells of a grid that is fixed in the field frame F (cell
-/// (row, column) covers x in [column, column + 1) * cell_m and y in [row, row + 1) * cell_m), kept
-/// as runs along x. Masks of the same cell size share the grid, so they are compared without
-/// resampling. Sizes in metres and mm2.
+/// A plant's silhouette on the ground: cells of a grid fixed in the field frame F, stored as runs
+/// along x. Cell (row, column) covers x in [column, column + 1) * cell_m and y in
+/// [row, row + 1) * cell_m. Masks of the same cell size share the grid, so they are compared
+/// without resampling. Sizes in metres and mm2.
 class GroundMask {
  public:
   struct Run {

@@ -38,9 +38,9 @@ class GroundRegion {
   std::vector<Eigen::Vector2d> inward_normals_F_;
 };
 
-/// What the camera sees of the ground: the image's outline, moved inwards by `border_px`, cast onto
-/// the plane at `ground_z_F_m`. kInvalidArgument: the border eats the image, or a corner looks at
-/// or above the horizon.
+/// The visible ground: the image's outline, moved inwards by `border_px`, cast onto the plane at
+/// `ground_z_F_m`. kInvalidArgument: the border covers the image, or a corner looks at or above the
+/// horizon.
 [[nodiscard]] Result<GroundRegion> visible_ground(const geometry::PinholeCamera& camera,
                                                   const Eigen::Isometry3d& X_FC,
                                                   double border_px = 0.0,

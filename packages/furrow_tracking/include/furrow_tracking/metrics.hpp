@@ -75,6 +75,19 @@ class TrackingEvaluation {
   void score_clear_mot(TrackingScores& scores) const;
   void score_identities(TrackingScores& scores) const;
   void score_hota(TrackingScores& scores) const;
+  /// Frames of each identity, and how far each pair of identities goes together (HOTA's global
+  /// alignment before normalization).
+  struct IdentityCounts {
+    std::vector<double> truth_frames;  // by dense id, as track_frames
+    std::vector<double> track_frames;
+    std::map<IdPair, double> potential;
+    double truth_points = 0.0;
+    double track_points = 0.0;
+  };
+  [[nodiscard]] IdentityCounts count_identities() const;
+  /// By threshold, the frames in which two identities are matched.
+  [[nodiscard]] std::vector<std::map<IdPair, double>> match_at_thresholds(
+      const IdentityCounts& counts) const;
 
   double zero_similarity_distance_m_;
   std::vector<Frame> frames_;

@@ -8,17 +8,17 @@
 
 namespace furrow::tracking {
 
-/// How far a fused pose moves beyond what the robot drives, as when a GNSS position corrects the
-/// drift of the wheels. What was placed in F by earlier poses has not moved against the robot: a
-/// tool on the robot finds it where `pending()` brings it.
+/// Motion of a fused pose beyond the robot's own motion, as when a GNSS position corrects the drift
+/// of the wheels. Points placed in F by earlier poses have not moved relative to the robot:
+/// `pending()` moves them to where a tool on the robot finds them.
 class PoseCorrection {
  public:
   /// Longer gaps between poses count as driven, whatever the pose says.
   explicit PoseCorrection(Duration longest_gap = Duration::seconds(0.5))
       : longest_gap_(longest_gap) {}
 
-  /// The next pose, and the robot's speed ahead and yaw rate there, by which it is expected from
-  /// the last one (the mean of both, along an arc). kInvalidArgument: not finite; kStale: not
+  /// The next pose with the robot's forward speed and yaw rate. The expected pose follows from the
+  /// last one along an arc, at the mean of both speeds. kInvalidArgument: not finite; kStale: not
   /// newer.
   Status add(Time stamp, const geometry::Pose2& X_FB, double speed_mps, double yaw_rate_radps);
 

@@ -60,9 +60,9 @@ struct GroundFootprint {
   std::int64_t pixels_without_depth = 0;
 };
 
-/// Carries each pixel of a mask by its depth and the camera's pose into the field frame. Pixels
-/// without depth are left out and counted. kInvalidArgument: images malformed, the box not inside
-/// the depth image, or cell or pose not valid. kNotFound: no pixel of the mask has a depth.
+/// Projects each pixel of a mask by its depth and the camera's pose into the field frame. Pixels
+/// without depth are omitted and counted. kInvalidArgument: malformed image, box outside the depth
+/// image, invalid cell or pose. kNotFound: no pixel of the mask has a depth.
 [[nodiscard]] Result<GroundFootprint> reproject_mask(const geometry::PinholeCamera& camera,
                                                      const Eigen::Isometry3d& X_FC,
                                                      const InstanceMask& mask,

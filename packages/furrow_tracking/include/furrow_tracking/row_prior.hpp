@@ -21,10 +21,9 @@ struct RowPriorParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// What the place of a plant tells of its class. Crops stand in rows along F's x, weeds anywhere:
-/// from the confirmed tracks at hand the rows are found (modes of the crops' density across, by a
-/// Gauss kernel), how dense crops stand along each row and how dense weeds between them, and by
-/// Bayes' rule
+/// Class evidence from the place of a plant. Crops stand in rows along F's x, weeds anywhere. The
+/// rows are modes of the lateral density of confirmed crops (Gaussian kernel). Each row has a crop
+/// density; the field has a weed density. Bayes' rule then gives
 ///   log P(crop | y) / P(weed | y) = log((sum_k c_k N(y; y_k, s_k) + c_off) / w)
 /// with c_k crops per metre of row k, c_off crops per m2 that stand anywhere, w weeds per m2.
 class RowPrior {
@@ -37,8 +36,8 @@ class RowPrior {
 
   explicit RowPrior(const RowPriorParameters& parameters);
 
-  /// Learns from the confirmed tracks by the evidence of their views alone. Without a row, or
-  /// without length, nothing is told of any place.
+  /// Learns from the confirmed tracks, by the evidence of their views alone. Without a row or
+  /// without length there is no evidence at any place.
   void learn(std::span<const Track> tracks);
   /// Within +-row_max_log_odds; 0 while no row is known.
   [[nodiscard]] double log_odds(double y_m) const;

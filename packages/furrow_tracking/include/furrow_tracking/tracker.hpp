@@ -48,9 +48,17 @@ struct TrackerParameters {
   RowPriorParameters rows;
 
   void visit(ParameterVisitor& v);
+
+ private:
+  void visit_association(ParameterVisitor& v);
+  void visit_lifetime(ParameterVisitor& v);
+  void visit_limits(ParameterVisitor& v);
+  void visit_position(ParameterVisitor& v);
+  void visit_class(ParameterVisitor& v);
+  void visit_pose(ParameterVisitor& v);
 };
 
-/// Why a view was not used at all.
+/// Why a view was rejected.
 enum class ViewFault : std::uint8_t {
   kNone,
   kTimeNotNewer,   ///< its stamp is not after that of the newest view used
@@ -58,20 +66,20 @@ enum class ViewFault : std::uint8_t {
   kBadCovariance,  ///< not finite, not symmetric, or with a negative variance
 };
 
-/// What one update did, as data. Counts are of this update alone.
+/// Counts of one update.
 struct UpdateSummary {
   ViewFault fault = ViewFault::kNone;
   std::int32_t observations = 0;
   std::int32_t matched = 0;
   std::int32_t born = 0;
   std::int32_t confirmed = 0;
-  std::int32_t missed = 0;      ///< tracks not matched where they should have been seen
+  std::int32_t missed = 0;      ///< unmatched tracks within the visible ground
   std::int32_t dropped = 0;     ///< ended for misses
   std::int32_t passed = 0;      ///< ended behind the robot
   std::int32_t merged = 0;      ///< ended as duplicates of another track
   std::int32_t evicted = 0;     ///< ended because the tracker was full
   std::int32_t rejected = 0;    ///< observations with a value that is not valid
-  std::int32_t overflow = 0;    ///< observations beyond max_observations, not looked at
+  std::int32_t overflow = 0;    ///< observations beyond max_observations, not used
   std::int32_t weak = 0;        ///< below match_score, or unmatched and below birth_score
   std::int32_t duplicates = 0;  ///< second observations of a plant already matched
   bool empty_view = false;      ///< no valid observation
@@ -79,17 +87,18 @@ struct UpdateSummary {
   [[nodiscard]] bool ok() const { return fault == ViewFault::kNone && rejected + overflow == 0; }
 };
 
-/// Follows plants as static landmarks of the field frame. Each update associates the observations
-/// of one view to the tracks (by distance over a dynamic radius, Halstead et al. 2021, or one of
-/// two baselines, with optimal linear assignment), refines positions by a Kalman filter and class
-/// by Bayes' rule. The result does not depend on the order of the observations. Errors of the pose
-/// are taken as independent from view to view, up to `max_pose_sigma_m`: what is beyond is drift,
-/// common to views that follow each other, and moves all plants alike. `position_floor_m` bounds
-/// what averaging may claim.
+/// Tracks plants as static landmarks of the field frame. Each update associates the observations of
+/// one view with the tracks by optimal linear assignment. The cost is the distance over a dynamic
+/// radius (Halstead et al. 2021) or one of two baselines. A Kalman filter refines the position,
+/// Bayes' rule the class. The result does not depend on the order of the observations.
 ///
-/// With `follow_pose` tracks go along with the corrections of the pose (View::correction) until the
-/// robot has passed them by `follow_behind_m`: a tool then finds a plant that was seen by an
-/// earlier pose. The footprints that masks are compared by stay where they were seen.
+/// Pose errors up to `max_pose_sigma_m` count as independent between views. A greater error is
+/// drift, common to consecutive views, and moves all plants alike. `position_floor_m` bounds the
+/// standard deviation that averaging can reach.
+///
+/// With `follow_pose` tracks move with the corrections of the pose (View::correction) until the
+/// robot has passed them by `follow_behind_m`. So a tool finds a plant that was seen from an
+/// earlier, wrong pose. Footprints used to compare masks are not moved.
 ///
 /// Cost: about linear in the plants in view; buffers are reused. Not thread-safe.
 class Tracker {
