@@ -10,7 +10,7 @@
 namespace furrow::annotation {
 namespace {
 
-bool same(const cv::Mat& a, const cv::Mat& b) {
+bool equal_masks(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && cv::countNonZero(a != b) == 0;
 }
 
@@ -73,7 +73,7 @@ TEST(Coco, ComesBackAsWritten) {
   EXPECT_EQ(*last.velocity_mps, 0.5);
   ASSERT_EQ(last.instances.size(), 2u);
   EXPECT_EQ(last.instances[0].box_px, written.images[1].instances[0].box_px);
-  EXPECT_TRUE(same(last.instances[0].mask, written.images[1].instances[0].mask));
+  EXPECT_TRUE(equal_masks(last.instances[0].mask, written.images[1].instances[0].mask));
   EXPECT_EQ(*last.instances[0].stem_px, Eigen::Vector2d(5.25, 5.5));
   EXPECT_EQ(last.instances[1].kind, SubClassKind::kCrop);
   EXPECT_FALSE(last.instances[1].stem_px.has_value());
