@@ -5,7 +5,9 @@ namespace furrow::localization {
 
 namespace {
 
-void visit_start(PoseFilterParameters& p, ParameterVisitor& v) {
+/// Parameters of both estimators.
+template <class Parameters>
+void visit_start_pose(Parameters& p, ParameterVisitor& v) {
   v.visit({.name = "initial_x_m",
            .unit = "m",
            .description = "where the robot starts, in the field frame",
@@ -24,6 +26,51 @@ void visit_start(PoseFilterParameters& p, ParameterVisitor& v) {
            .min = -3.1416,
            .max = 3.1416},
           p.initial_heading_rad);
+}
+
+template <class Parameters>
+void visit_bounds(Parameters& p, ParameterVisitor& v) {
+  v.visit({.name = "history_measurements",
+           .description = "greatest number of measurements kept",
+           .min = 2,
+           .max = 100000},
+          p.history_measurements);
+  v.visit({.name = "max_extrapolation_s",
+           .unit = "s",
+           .description = "how far beyond the newest measurement a pose is given",
+           .min = 0.0,
+           .max = 60.0},
+          p.max_extrapolation_s);
+}
+
+template <class Parameters>
+void visit_odometry_timeout(Parameters& p, ParameterVisitor& v) {
+  v.visit({.name = "odometry_timeout_s",
+           .unit = "s",
+           .description = "age of odometry from which on the health is degraded",
+           .min = 0.0,
+           .max = 60.0},
+          p.odometry_timeout_s);
+}
+
+template <class Parameters>
+void visit_position_sigmas(Parameters& p, ParameterVisitor& v) {
+  v.visit({.name = "degraded_position_sigma_m",
+           .unit = "m",
+           .description = "standard deviation of position from which on the health is degraded",
+           .min = 0.0,
+           .max = 1e4},
+          p.degraded_position_sigma_m);
+  v.visit({.name = "lost_position_sigma_m",
+           .unit = "m",
+           .description = "standard deviation of position from which on the robot is lost",
+           .min = 0.0,
+           .max = 1e4},
+          p.lost_position_sigma_m);
+}
+
+void visit_start(PoseFilterParameters& p, ParameterVisitor& v) {
+  visit_start_pose(p, v);
   v.visit({.name = "initial_position_sigma_m",
            .unit = "m",
            .description = "standard deviation of the start in x and in y",
@@ -175,47 +222,21 @@ void visit_history(PoseFilterParameters& p, ParameterVisitor& v) {
            .min = 0.0,
            .max = 60.0},
           p.history_s);
-  v.visit({.name = "history_measurements",
-           .description = "greatest number of measurements kept",
-           .min = 2,
-           .max = 100000},
-          p.history_measurements);
-  v.visit({.name = "max_extrapolation_s",
-           .unit = "s",
-           .description = "how far beyond the newest measurement a pose is given",
-           .min = 0.0,
-           .max = 60.0},
-          p.max_extrapolation_s);
+  visit_bounds(p, v);
   v.visit({.name = "max_jump_ahead_s",
            .unit = "s",
            .description = "greatest step ahead of a stamp that is believed at once",
            .min = 0.1,
            .max = 1e6},
           p.max_jump_ahead_s);
-  v.visit({.name = "odometry_timeout_s",
-           .unit = "s",
-           .description = "age of odometry from which on the health is degraded",
-           .min = 0.0,
-           .max = 60.0},
-          p.odometry_timeout_s);
+  visit_odometry_timeout(p, v);
   v.visit({.name = "gnss_timeout_s",
            .unit = "s",
            .description = "age of GNSS from which on the health is degraded",
            .min = 0.0,
            .max = 600.0},
           p.gnss_timeout_s);
-  v.visit({.name = "degraded_position_sigma_m",
-           .unit = "m",
-           .description = "standard deviation of position from which on the health is degraded",
-           .min = 0.0,
-           .max = 1e4},
-          p.degraded_position_sigma_m);
-  v.visit({.name = "lost_position_sigma_m",
-           .unit = "m",
-           .description = "standard deviation of position from which on the robot is lost",
-           .min = 0.0,
-           .max = 1e4},
-          p.lost_position_sigma_m);
+  visit_position_sigmas(p, v);
 }
 
 }  // namespace
@@ -229,65 +250,22 @@ void PoseFilterParameters::visit(ParameterVisitor& v) {
 }
 
 void OdometryIntegratorParameters::visit(ParameterVisitor& v) {
-  v.visit({.name = "initial_x_m",
-           .unit = "m",
-           .description = "where the robot starts, in the field frame",
-           .min = -1e6,
-           .max = 1e6},
-          initial_x_m);
-  v.visit({.name = "initial_y_m",
-           .unit = "m",
-           .description = "where the robot starts, in the field frame",
-           .min = -1e6,
-           .max = 1e6},
-          initial_y_m);
-  v.visit({.name = "initial_heading_rad",
-           .unit = "rad",
-           .description = "heading at the start, from the field's x",
-           .min = -3.1416,
-           .max = 3.1416},
-          initial_heading_rad);
+  visit_start_pose(*this, v);
   v.visit({.name = "history_s",
            .unit = "s",
            .description = "how far back a pose is given",
            .min = 0.0,
            .max = 60.0},
           history_s);
-  v.visit({.name = "history_measurements",
-           .description = "greatest number of measurements kept",
-           .min = 2,
-           .max = 100000},
-          history_measurements);
-  v.visit({.name = "max_extrapolation_s",
-           .unit = "s",
-           .description = "how far beyond the newest measurement a pose is given",
-           .min = 0.0,
-           .max = 60.0},
-          max_extrapolation_s);
+  visit_bounds(*this, v);
   v.visit({.name = "max_gap_s",
            .unit = "s",
            .description = "longest gap between measurements that is driven across",
            .min = 0.01,
            .max = 60.0},
           max_gap_s);
-  v.visit({.name = "odometry_timeout_s",
-           .unit = "s",
-           .description = "age of odometry from which on the health is degraded",
-           .min = 0.0,
-           .max = 60.0},
-          odometry_timeout_s);
-  v.visit({.name = "degraded_position_sigma_m",
-           .unit = "m",
-           .description = "standard deviation of position from which on the health is degraded",
-           .min = 0.0,
-           .max = 1e4},
-          degraded_position_sigma_m);
-  v.visit({.name = "lost_position_sigma_m",
-           .unit = "m",
-           .description = "standard deviation of position from which on the robot is lost",
-           .min = 0.0,
-           .max = 1e4},
-          lost_position_sigma_m);
+  visit_odometry_timeout(*this, v);
+  visit_position_sigmas(*this, v);
 }
 
 }  // namespace furrow::localization
