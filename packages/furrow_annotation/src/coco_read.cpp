@@ -105,7 +105,7 @@ AnnotatedImage read_image(const JsonNode& node, const std::filesystem::path& fol
     const JsonNode boxes = node.at("ignore_boxes");
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const cv::Rect box = read_box(boxes.entry(i), {image.width_px, image.height_px});
-      if (!box.empty()) image.ignore_boxes_px.push_back(box);
+      if (!box.empty()) image.ignore_boxes.push_back(box);
     }
   }
   read_capture(node, image);
@@ -178,7 +178,9 @@ class CocoReader {
       if (!image_of_id_.emplace(node.at("id").id(), i).second) {
         throw Malformed{node.key() + ".id", "is given twice"};
       }
-      dataset_.images.push_back(read_image(node, folder_));
+      AnnotatedImage image = read_image(node, folder_);
+      if (!image.resolution_mm_per_px) image.resolution_mm_per_px = dataset_.resolution_mm_per_px;
+      dataset_.images.push_back(std::move(image));
     }
   }
 

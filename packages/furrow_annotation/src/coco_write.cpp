@@ -19,7 +19,9 @@ void add_name(const std::string& name, Json& json) {
   if (!is_utf8(name)) json["file_name_percent"] = percent_encoded(name);
 }
 
-Json image_json(const AnnotatedImage& image, std::size_t id, const std::filesystem::path& folder) {
+/// `resolution_mm` is that of the whole data set, which an image need not repeat.
+Json image_json(const AnnotatedImage& image, std::size_t id, const std::filesystem::path& folder,
+                const std::optional<double>& resolution_mm) {
   Json json = {{"id", id}};
   add_name(relative_to(image.path, folder), json);
   json["width"] = image.width_px;
@@ -27,8 +29,10 @@ Json image_json(const AnnotatedImage& image, std::size_t id, const std::filesyst
   if (!image.depth_path.empty()) {
     json["depth_file_name"] = with_valid_utf8(relative_to(image.depth_path, folder));
   }
-  if (image.resolution_mm_per_px) json["resolution_mm_per_px"] = *image.resolution_mm_per_px;
-  for (const cv::Rect& box : image.ignore_boxes_px) {
+  if (image.resolution_mm_per_px != resolution_mm && image.resolution_mm_per_px) {
+    json["resolution_mm_per_px"] = *image.resolution_mm_per_px;
+  }
+  for (const cv::Rect& box : image.ignore_boxes) {
     json["ignore_boxes"].push_back({box.x, box.y, box.width, box.height});
   }
   if (image.X_FB) json["pose"] = {image.X_FB->x_m, image.X_FB->y_m, image.X_FB->heading_rad};
@@ -116,7 +120,8 @@ Status write_coco(const std::filesystem::path& file, const Dataset& dataset) {
   const auto category_ids = add_categories(dataset.classes, root["categories"]);
   if (!category_ids) return category_ids.error();
   for (std::size_t i = 0; i < dataset.images.size(); ++i) {
-    root["images"].push_back(image_json(dataset.images[i], i + 1, file.parent_path()));
+    root["images"].push_back(
+        image_json(dataset.images[i], i + 1, file.parent_path(), dataset.resolution_mm_per_px));
     const Status added =
         add_annotations(dataset.images[i], i + 1, *category_ids, root["annotations"]);
     if (!added.ok()) return added;

@@ -42,7 +42,7 @@ Dataset small_dataset(const std::filesystem::path& folder) {
   crop.box_px = {20, 10, 10, 10};
   crop.mask = cv::Mat(10, 10, CV_8U, cv::Scalar(255));
   last.instances = {weed, crop};
-  last.ignore_boxes_px = {{1, 2, 3, 4}};
+  last.ignore_boxes = {{1, 2, 3, 4}};
   last.instances[0].truncated = true;
   last.instances[1].box_only = true;
   dataset.images = {before, last};
@@ -77,8 +77,9 @@ TEST(Coco, ComesBackAsWritten) {
   EXPECT_EQ(*last.instances[0].stem_px, Eigen::Vector2d(5.25, 5.5));
   EXPECT_EQ(last.instances[1].kind, SubClassKind::kCrop);
   EXPECT_FALSE(last.instances[1].stem_px.has_value());
-  EXPECT_EQ(last.ignore_boxes_px, written.images[1].ignore_boxes_px);
+  EXPECT_EQ(last.ignore_boxes, written.images[1].ignore_boxes);
   EXPECT_EQ(read->resolution_mm_per_px, 0.5);
+  EXPECT_EQ(read->images[0].resolution_mm_per_px, 0.5);
   EXPECT_TRUE(last.instances[0].truncated);
   EXPECT_FALSE(last.instances[0].box_only);
   EXPECT_TRUE(last.instances[1].box_only);

@@ -118,7 +118,7 @@ TEST_F(CocoTolerance, ReadsResolutionIgnoreBoxesAndAttributes) {
   ASSERT_TRUE(dataset.ok()) << dataset.error().message;
   EXPECT_EQ(dataset->resolution_mm_per_px, 1.5);
   EXPECT_EQ(dataset->images[0].resolution_mm_per_px, 0.25);
-  EXPECT_EQ(dataset->images[0].ignore_boxes_px, std::vector<cv::Rect>({{0, 3, 3, 7}}));
+  EXPECT_EQ(dataset->images[0].ignore_boxes, std::vector<cv::Rect>({{0, 3, 3, 7}}));
   EXPECT_TRUE(dataset->images[0].instances.at(0).truncated);
 }
 

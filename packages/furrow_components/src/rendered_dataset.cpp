@@ -265,6 +265,7 @@ Status render_dataset(const RenderedDatasetParameters& parameters,
   }
   annotation::Dataset whole;
   whole.name = "rendered";
+  whole.resolution_mm_per_px = parameters.resolution_mm_per_px;
   for (const field::Species& entry : species.all()) {
     whole.classes.push_back({entry.name, entry.kind == field::PlantKind::kCrop
                                              ? annotation::SubClassKind::kCrop

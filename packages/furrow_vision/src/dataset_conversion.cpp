@@ -103,6 +103,7 @@ DatasetSplit split_dataset(const Dataset& dataset, const ConversionParameters& p
   for (Dataset* part : parts) {
     part->name = dataset.name;
     part->classes = dataset.classes;
+    part->resolution_mm_per_px = dataset.resolution_mm_per_px;
   }
   for (std::size_t i = 0; i < dataset.images.size(); ++i) {
     parts[part_of[i]]->images.push_back(dataset.images[i]);
@@ -135,6 +136,15 @@ void scale_image(AnnotatedImage& image, double scale) {
     cv::Mat whole = image.vegetation > 0;
     image.vegetation = scaled_mask(whole, after);
   }
+  for (cv::Rect& box : image.ignore_boxes) {
+    const cv::Rect2d scaled(box.x * scale_u, box.y * scale_v, box.width * scale_u,
+                            box.height * scale_v);
+    const cv::Point low(static_cast<int>(scaled.x), static_cast<int>(scaled.y));
+    const cv::Point high(static_cast<int>(std::ceil(scaled.br().x)),
+                         static_cast<int>(std::ceil(scaled.br().y)));
+    box = cv::Rect(low, high) & cv::Rect(cv::Point(), after);
+  }
+  if (image.resolution_mm_per_px) *image.resolution_mm_per_px /= scale_u;
   image.width_px = after.width;
   image.height_px = after.height;
   image.depth_path.clear();
@@ -158,6 +168,7 @@ Status convert_dataset(const Dataset& dataset, const ConversionParameters& param
   std::size_t done = 0;
   const auto write_part = [&](Dataset& part, const char* name, double scale,
                               bool evaluation) -> Status {
+    if (part.resolution_mm_per_px) *part.resolution_mm_per_px /= scale;
     for (AnnotatedImage& image : part.images) {
       if (const Status loaded = load_pixels(image); !loaded.ok()) return loaded;
       scale_image(image, scale);

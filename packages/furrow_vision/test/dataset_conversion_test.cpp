@@ -82,7 +82,11 @@ TEST(ScaleImage, ScalesMasksAndStems) {
   AnnotatedImage image = image_of("none.png");
   image.bgr = cv::Mat(40, 60, CV_8UC3, cv::Scalar(1, 2, 3));
   image.vegetation = cv::Mat(40, 60, CV_8U, cv::Scalar(1));
+  image.ignore_boxes = {{10, 20, 5, 4}};
+  image.resolution_mm_per_px = 0.3;
   scale_image(image, 0.5);
+  EXPECT_EQ(image.ignore_boxes, std::vector<cv::Rect>({{5, 10, 3, 2}}));
+  EXPECT_NEAR(*image.resolution_mm_per_px, 0.6, 1e-12);
   EXPECT_EQ(image.bgr.size(), cv::Size(30, 20));
   EXPECT_EQ(image.width_px, 30);
   ASSERT_EQ(image.instances.size(), 1u);
@@ -98,7 +102,8 @@ TEST(ScaleImage, ScalesMasksAndStems) {
 
 TEST(ConvertDataset, WritesPartsThatComeBack) {
   const TemporaryFolder folder;
-  const Dataset dataset = dataset_of(folder.path(), 6);
+  Dataset dataset = dataset_of(folder.path(), 6);
+  dataset.resolution_mm_per_px = 0.3;
   const auto out = folder.path() / "out";
   std::size_t done = 0;
   ASSERT_TRUE(
@@ -110,6 +115,8 @@ TEST(ConvertDataset, WritesPartsThatComeBack) {
   EXPECT_EQ(train->images.size(), 2u);
   ASSERT_EQ(evaluation->images.size(), 3u);
   EXPECT_EQ(train->images[0].width_px, 30);
+  EXPECT_NEAR(*train->resolution_mm_per_px, 0.6, 1e-12);
+  EXPECT_NEAR(*evaluation->resolution_mm_per_px, 0.3, 1e-12);
   EXPECT_EQ(evaluation->images[0].width_px, 60);
   ASSERT_TRUE(load_pixels(train->images[0]).ok());
   ASSERT_TRUE(load_pixels(evaluation->images[0]).ok());

@@ -47,13 +47,14 @@ struct AnnotatedImage {
   int height_px = 0;
   std::vector<AnnotatedInstance> instances;
   /// Parts of the image in which nothing counts, neither soil nor plant; inside the image.
-  std::vector<cv::Rect> ignore_boxes_px;
+  std::vector<cv::Rect> ignore_boxes;
   /// CV_8U of the image's size: 0 soil, else plant, where the data set has a vegetation mask of its
   /// own that is finer than the instances (CWFID). Empty: the union of the instances.
   cv::Mat vegetation;
-  std::optional<double> resolution_mm_per_px;  ///< ground of a pixel, when the file has it
-  std::optional<geometry::Pose2> X_FB;         ///< robot pose in the field at the exposure
-  std::optional<double> velocity_mps;          ///< along the robot's x
+  std::optional<double>
+      resolution_mm_per_px;  ///< ground of a pixel, when the file has it; of the image or of all
+  std::optional<geometry::Pose2> X_FB;  ///< robot pose in the field at the exposure
+  std::optional<double> velocity_mps;   ///< along the robot's x
   std::optional<Time> stamp;
   std::string sequence;  ///< frames of one short sequence share it; empty: a single image
   bool labelled = true;  ///< false: a frame of a sequence whose last frame carries the labels
