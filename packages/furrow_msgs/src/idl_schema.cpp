@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <optional>
+#include <utility>
 
 namespace furrow::msgs {
 namespace {
@@ -33,43 +34,85 @@ constexpr std::string_view kConstants = "_Constants";
 struct Token {
   std::string text;
   int line = 1;
+  std::string before = {};  ///< lines of comment right before its line
+  std::string after = {};   ///< comment behind it on its line
 };
 
 bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-std::vector<Token> tokenize(std::string_view idl) {
-  std::vector<Token> tokens;
-  int line = 1;
-  for (std::size_t i = 0; i < idl.size();) {
-    const char c = idl[i];
-    if (c == '\n') ++line;
-    if (idl.substr(i, 2) == "//" || c == '#') {
-      while (i < idl.size() && idl[i] != '\n') ++i;
-    } else if (std::isspace(static_cast<unsigned char>(c)) != 0) {
-      ++i;
-    } else if (is_word(c)) {
-      const std::size_t start = i;
-      while (i < idl.size() && is_word(idl[i])) ++i;
-      tokens.push_back({std::string(idl.substr(start, i - start)), line});
-    } else if (idl.substr(i, 2) == "::") {
-      tokens.push_back({"::", line});
-      i += 2;
+/// Splits a text into tokens, with the comments at them.
+class Tokenizer {
+ public:
+  explicit Tokenizer(std::string_view idl) : idl_(idl) {}
+
+  std::vector<Token> run() {
+    while (at_ < idl_.size()) {
+      const char c = idl_[at_];
+      if (c == '\n') {
+        line_end();
+      } else if (idl_.substr(at_, 2) == "//") {
+        comment(rest_of_line());
+      } else if (c == '#') {
+        (void)rest_of_line();
+      } else if (std::isspace(static_cast<unsigned char>(c)) != 0) {
+        ++at_;
+      } else {
+        token(idl_.substr(at_, length_of_token()));
+      }
+    }
+    return std::move(tokens_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t length_of_token() const {
+    std::size_t length = 0;
+    while (at_ + length < idl_.size() && is_word(idl_[at_ + length])) ++length;
+    if (length > 0) return length;
+    return idl_.substr(at_, 2) == "::" ? 2 : 1;
+  }
+  void token(std::string_view text) {
+    tokens_.push_back({std::string(text), line_, std::exchange(pending_, {})});
+    at_ += text.size();
+    empty_line_ = false;
+  }
+  void line_end() {
+    if (empty_line_) pending_.clear();
+    empty_line_ = true;
+    ++line_;
+    ++at_;
+  }
+  std::string_view rest_of_line() {
+    const std::string_view rest = idl_.substr(at_, idl_.find('\n', at_) - at_);
+    at_ += rest.size();
+    empty_line_ = false;
+    return rest;
+  }
+  void comment(std::string_view text) {
+    const std::size_t first = text.find_first_not_of("/ \t");
+    text = first == std::string_view::npos ? std::string_view() : text.substr(first);
+    if (!tokens_.empty() && tokens_.back().line == line_) {
+      tokens_.back().after = text;
     } else {
-      tokens.push_back({std::string(1, c), line});
-      ++i;
+      pending_.append(text).append("\n");
     }
   }
-  return tokens;
-}
+
+  std::string_view idl_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  bool empty_line_ = true;
+  std::string pending_;  ///< comment before the next token
+  std::vector<Token> tokens_;
+};
 
 /// A recursive descent over the tokens; the first fault ends it.
 class Parser {
  public:
   using Structs = std::map<std::string, std::vector<IdlMember>>;
   using Constants = std::map<std::string, std::vector<IdlConstant>>;
-  explicit Parser(std::string_view idl) : tokens_(tokenize(idl)) {}
+  explicit Parser(std::string_view idl) : tokens_(Tokenizer(idl).run()) {}
 
   Status parse() {
     while (at_ < tokens_.size() && !fault_) definition("");
@@ -78,6 +121,9 @@ class Parser {
   }
   Structs structs;
   Constants constants;
+  std::map<std::string, std::string> comments;  ///< of modules NAME_Constants, by NAME
+  std::set<std::string> final;
+  std::vector<std::string> order;
 
  private:
   [[nodiscard]] std::string_view peek() const {
@@ -100,10 +146,16 @@ class Parser {
   }
 
   void definition(const std::string& scope) {
-    while (peek() == "@" && !fault_) annotation();
+    bool is_final = false;
+    while (peek() == "@" && !fault_) is_final |= annotation() == "final";
+    const std::string comment = at_ < tokens_.size() ? tokens_[at_].before : "";
     const std::string keyword = take();
     if (keyword == "module") {
-      const std::string inner = scope + take() + "::";
+      const std::string name = take();
+      const std::string inner = scope + name + "::";
+      if (name.ends_with(kConstants)) {
+        comments[scope + name.substr(0, name.size() - kConstants.size())] = comment;
+      }
       expect("{");
       while (peek() != "}" && !fault_) definition(inner);
       expect("}");
@@ -116,6 +168,8 @@ class Parser {
       expect("}");
       expect(";");
       structs[name] = std::move(members);
+      order.push_back(name);
+      if (is_final) final.insert(name);
     } else if (keyword == "const") {
       constant(scope);
     } else {
@@ -139,6 +193,7 @@ class Parser {
     expect("=");
     if (peek() == "-") constant.value = take();
     constant.value += take();
+    if (at_ < tokens_.size()) constant.comment = tokens_[at_].after;
     expect(";");
     constants[std::string(scope)].push_back(std::move(constant));
   }
@@ -153,16 +208,18 @@ class Parser {
     return fault_ ? 0 : std::stoul(size);
   }
 
-  void annotation() {
+  /// The name of the annotation.
+  std::string annotation() {
     expect("@");
-    take();
-    if (peek() != "(") return;
+    std::string name = take();
+    if (peek() != "(") return name;
     while (peek() != ")" && !fault_) take();
     expect(")");
+    return name;
   }
 
   IdlMember member() {
-    while (peek() == "@" && !fault_) annotation();
+    while (peek() == "@" && !fault_) (void)annotation();
     IdlMember member;
     if (peek() == "sequence") {
       take();
@@ -213,6 +270,9 @@ Result<IdlSchema> IdlSchema::parse(std::string_view idl) {
   IdlSchema schema;
   schema.structs_ = std::move(parser.structs);
   schema.constants_ = std::move(parser.constants);
+  schema.comments_ = std::move(parser.comments);
+  schema.final_ = std::move(parser.final);
+  schema.order_ = std::move(parser.order);
   return schema;
 }
 
@@ -234,11 +294,13 @@ bool IdlSchema::is_enumeration(const std::string& struct_name) const {
          find(member.type) == nullptr;
 }
 
-std::vector<std::string> IdlSchema::struct_names() const {
-  std::vector<std::string> names;
-  names.reserve(structs_.size());
-  for (const auto& [name, members] : structs_) names.push_back(name);
-  return names;
+std::string IdlSchema::comment_of_constants(const std::string& struct_name) const {
+  const auto it = comments_.find(struct_name);
+  return it == comments_.end() ? std::string() : it->second;
+}
+
+bool IdlSchema::is_final(const std::string& struct_name) const {
+  return final_.contains(struct_name);
 }
 
 }  // namespace furrow::msgs

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,12 +25,15 @@ struct IdlMember {
 struct IdlConstant {
   std::string type;  ///< a primitive
   std::string name;
-  std::string value;  ///< as the text has it; string constants are not supported
+  std::string value;         ///< as the text has it; string constants are not supported
+  std::string comment = {};  ///< at the end of its line, without "//"
 };
 
 /// The structs of an IDL text, by their scoped names ("sensor_msgs::msg::Image"), and the constants
 /// that belong to them. It supports what ROS 2's message types need: modules, structs, constants,
-/// primitives, string, sequence and one-dimensional arrays. Annotations and comments are skipped.
+/// primitives, string, sequence and one-dimensional arrays. Other annotations than @final are
+/// skipped. The one parser of IDL: the build generates message types with it, and programs print
+/// messages.
 class IdlSchema {
  public:
   /// kParse with the line for anything else, and for a type that is not defined before its use.
@@ -41,11 +45,20 @@ class IdlSchema {
   [[nodiscard]] std::span<const IdlConstant> constants_of(const std::string& struct_name) const;
   /// Whether a struct is an enumeration: constants, and the one member `value` of a primitive.
   [[nodiscard]] bool is_enumeration(const std::string& struct_name) const;
-  [[nodiscard]] std::vector<std::string> struct_names() const;
+  /// The lines of comment right before module "NAME_Constants", each with its line break and
+  /// without
+  /// "//"; empty: none.
+  [[nodiscard]] std::string comment_of_constants(const std::string& struct_name) const;
+  [[nodiscard]] bool is_final(const std::string& struct_name) const;
+  /// In the order of the text.
+  [[nodiscard]] const std::vector<std::string>& struct_names() const { return order_; }
 
  private:
   std::map<std::string, std::vector<IdlMember>> structs_;
   std::map<std::string, std::vector<IdlConstant>> constants_;  ///< by the name of their struct
+  std::map<std::string, std::string> comments_;                ///< likewise
+  std::set<std::string> final_;
+  std::vector<std::string> order_;
 };
 
 struct PrintLimits {
