@@ -25,6 +25,7 @@ ALGORITHMS = {
 # What a package may depend on; a package that is not here has no place yet.
 BASE = {"furrow_cmake", "furrow_core"}
 GEOMETRIC = BASE | {"furrow_geometry"}
+SYSTEM = BASE | {"furrow_msgs", "furrow_graph", "furrow_dds"}
 LAYERS = {
     "furrow_cmake": set(),
     "furrow_core": {"furrow_cmake"},
@@ -44,9 +45,16 @@ LAYERS = {
     "furrow_recording": BASE | {"furrow_msgs", "furrow_graph", "furrow_dds"},
     "furrow_components": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph"},
     "furrow_experiments": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph", "furrow_components"},
-    "furrow_cli": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph", "furrow_dds",
-                                       "furrow_recording", "furrow_components",
-                                       "furrow_experiments"},
+    "furrow_launch": SYSTEM | {"furrow_components", "furrow_ledger", "furrow_field",
+                               "furrow_geometry", "furrow_recording"},
+    "furrow_supervisor": SYSTEM | {"furrow_launch", "furrow_components"},
+    "furrow_evaluation": ALGORITHMS | SYSTEM | {"furrow_components", "furrow_launch"},
+    "furrow_benchmarks": SYSTEM | {"furrow_evaluation", "furrow_launch", "furrow_recording",
+                                   "furrow_supervisor", "furrow_vision"},
+    "furrow_cli": ALGORITHMS | SYSTEM | {"furrow_benchmarks", "furrow_components",
+                                         "furrow_evaluation", "furrow_experiments",
+                                         "furrow_launch", "furrow_recording",
+                                         "furrow_supervisor"},
     "furrow_system_tests": {"furrow_cli"},
 }
 

@@ -4,13 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "command.hpp"
-#include "console.hpp"
+#include "commands.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_core/file.hpp"
+#include "furrow_core/text.hpp"
+#include "furrow_core/version.hpp"
 #include "furrow_recording/mcap_tools.hpp"
 #include "furrow_recording/topic_description.hpp"
 #include "furrow_recording/topic_filter.hpp"
+#include "output_options.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -19,7 +20,7 @@ struct BagOptions {
   std::vector<std::string> files;
   std::string in;
   std::string out;
-  std::string json;
+  ResultOptions results;
   std::string compression = "zstd";
   recording::TopicFilter topics;
   double from_s = 0.0;
@@ -106,9 +107,9 @@ nlohmann::ordered_json describe(const std::string& file, const mcap::Reader& rea
 
 void print(const nlohmann::ordered_json& file) {
   std::cout << file["file"].get<std::string>() << '\n'
-            << "  " << number(file["bytes"].get<double>() * 1e-6, 3) << " MB, "
-            << number(file["duration_s"].get<double>(), 3) << " s from "
-            << number(file["start_s"].get<double>(), 3) << ", " << file["messages"] << " messages, "
+            << "  " << fixed(file["bytes"].get<double>() * 1e-6, 3) << " MB, "
+            << fixed(file["duration_s"].get<double>(), 3) << " s from "
+            << fixed(file["start_s"].get<double>(), 3) << ", " << file["messages"] << " messages, "
             << file["chunks"] << " chunks (" << file["compression"].get<std::string>()
             << "), profile " << file["profile"].get<std::string>() << ", by "
             << file["library"].get<std::string>() << '\n';
@@ -119,12 +120,13 @@ void print(const nlohmann::ordered_json& file) {
       {"topic", "type", "messages", "Hz", "schema", "quality"}};
   for (const auto& topic : file["topics"]) {
     rows.push_back({topic["topic"], topic["type"], topic["messages"].dump(),
-                    number(topic["rate_hz"].get<double>(), 2), topic["schema"], topic["qos"]});
+                    fixed(topic["rate_hz"].get<double>(), 2), topic["schema"], topic["qos"]});
   }
   std::cout << text_table(rows);
 }
 
 int info(const BagOptions& options) {
+  ResultFiles files(options.results);
   nlohmann::ordered_json json = {{"rows", nlohmann::ordered_json::array()}};
   bool damaged = false;
   for (const std::string& file : options.files) {
@@ -133,12 +135,8 @@ int info(const BagOptions& options) {
     damaged = damaged || !reader.damage().empty();
     print(json["rows"].back());
   }
-  json["version"] = FURROW_VERSION;
-  if (!options.json.empty()) {
-    if (const Status written = write_file_atomically(options.json, json.dump(2) + "\n"); !written) {
-      throw std::runtime_error(written.error().message);
-    }
-  }
+  json["version"] = version();
+  files.write_json(json.dump(2) + "\n");
   return damaged ? 1 : 0;
 }
 
@@ -196,7 +194,7 @@ int cut(const BagOptions& options) {
     const mcap::Statistics& statistics = *reader.summary().statistics;
     const double length_s = (statistics.end_time - statistics.start_time).to_seconds();
     if (options.from_s > length_s) {
-      throw ConfigError("--from: the recording is only " + number(length_s, 3) + " s long");
+      throw ConfigError("--from: the recording is only " + fixed(length_s, 3) + " s long");
     }
     if (options.to_s > 0.0 && options.to_s <= options.from_s) {
       throw ConfigError("--to: must be later than --from");
@@ -221,46 +219,48 @@ int cut(const BagOptions& options) {
                                    writer_options(options.compression)));
 }
 
-void add_copy_options(CLI::App* command, BagOptions& options) {
-  command->add_option("in", options.in, "MCAP file")->required();
-  command->add_option("out", options.out, "file to write; must not exist")->required();
-  command->add_option("--compression", options.compression, "of chunks")
-      ->check(CLI::IsMember({"none", "lz4", "zstd"}))
-      ->capture_default_str();
+void add_copy_options(Command command, BagOptions& options) {
+  command.option("in", options.in, "MCAP file").required();
+  command.option("out", options.out, "file to write; must not exist").required();
+  command.option("--compression", options.compression, "compression of the chunks")
+      .choices({"none", "lz4", "zstd"});
+}
+
+void add_cut_command(Command group) {
+  auto options = std::make_shared<BagOptions>();
+  Command command = group.subcommand("cut", "Copies a time range and some topics.");
+  add_copy_options(command, *options);
+  command.option("--from", options->from_s, "start, s from the first message, included")
+      .range(0.0, 1e9);
+  command.option("--to", options->to_s, "end, s from the first message, excluded; 0: all")
+      .range(0.0, 1e9);
+  command.option("--topics", options->topics.include, "names or patterns to copy; default: all");
+  command.option("--exclude", options->topics.exclude, "names or patterns not to copy");
+  command.flag("--no-latched", options->no_latched, "leave out earlier messages of latched topics");
+  command.on_run([options] { return cut(*options); });
 }
 
 }  // namespace
 
-void add_bag_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("bag", "Looks at recordings, checks and mends them.");
-  command->require_subcommand(1);
+void add_bag_commands(Command root) {
+  Command group = root.group("bag", "Inspects, checks and repairs recordings.");
   auto options = std::make_shared<BagOptions>();
-  CLI::App* info_command =
-      command->add_subcommand("info", "Topics, times, types and sizes. Exit 1: damaged.");
-  info_command->add_option("files", options->files, "MCAP files")->required();
-  info_command->add_option("--json", options->json, "file of the results");
-  info_command->callback([options, &exit_code] { exit_code = info(*options); });
-  CLI::App* verify_command = command->add_subcommand(
-      "verify", "Goes through every byte: structure, CRCs, indexes. Exit 1: faults.");
-  verify_command->add_option("files", options->files, "MCAP files")->required();
-  verify_command->callback([options, &exit_code] { exit_code = verify(*options); });
-  CLI::App* recover_command = command->add_subcommand(
-      "recover", "Writes a whole file from what can be read of a damaged one.");
+  Command info_command =
+      group.subcommand("info", "Shows topics, times, types and sizes. Exit code 1: damaged.");
+  info_command.option("files", options->files, "MCAP files").required();
+  add_result_options(info_command, options->results, false);
+  info_command.on_run([options] { return info(*options); });
+
+  Command verify_command = group.subcommand(
+      "verify", "Checks every byte: structure, CRCs, indexes. Exit code 1: faults.");
+  verify_command.option("files", options->files, "MCAP files").required();
+  verify_command.on_run([options] { return verify(*options); });
+
+  Command recover_command =
+      group.subcommand("recover", "Writes a sound file from what can be read of a damaged one.");
   add_copy_options(recover_command, *options);
-  recover_command->callback([options, &exit_code] { exit_code = recover(*options); });
-  CLI::App* cut_command = command->add_subcommand("cut", "Copies a time range and some topics.");
-  add_copy_options(cut_command, *options);
-  cut_command->add_option("--from", options->from_s, "seconds from the first message, included")
-      ->check(CLI::Range(0.0, 1e9));
-  cut_command->add_option("--to", options->to_s, "seconds, excluded; 0: to the end")
-      ->check(CLI::Range(0.0, 1e9));
-  cut_command->add_option("--topics", options->topics.include, "names or patterns to copy")
-      ->take_all();
-  cut_command->add_option("--exclude", options->topics.exclude, "names or patterns to leave out")
-      ->take_all();
-  cut_command->add_flag("--no-latched", options->no_latched,
-                        "leave out what late joiners would get at the beginning");
-  cut_command->callback([options, &exit_code] { exit_code = cut(*options); });
+  recover_command.on_run([options] { return recover(*options); });
+  add_cut_command(group);
 }
 
 }  // namespace furrow::cli

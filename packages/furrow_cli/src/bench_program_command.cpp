@@ -7,9 +7,8 @@
 #include <system_error>
 #include <vector>
 
-#include "command.hpp"
+#include "commands.hpp"
 #include "furrow_core/error.hpp"
-#include "verb.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -25,10 +24,10 @@ constexpr BenchProgram kPrograms[] = {
     {"filter", FURROW_FILTER_BENCH, "Time of one step of the localization filter."},
 };
 
-/// Becomes the program: its output and its exit code are the command's.
-void become(const std::string& file, std::vector<std::string> arguments) {
+/// Replaces this process by the program: its output and its exit code are the command's.
+[[noreturn]] void replace_process(const std::string& file, std::vector<std::string> arguments) {
   if (!std::filesystem::exists(file)) {
-    throw ConfigError(file + " was not built; install libbenchmark-dev and build again");
+    throw ConfigError(file + ": was not built; install libbenchmark-dev and build again");
   }
   arguments.insert(arguments.begin(), file);
   std::vector<char*> argv;
@@ -40,13 +39,13 @@ void become(const std::string& file, std::vector<std::string> arguments) {
 
 }  // namespace
 
-void add_bench_program_commands(CLI::App& app, int& /*exit_code*/) {
-  CLI::App* bench = group(app, "bench", "Speeds, with the alternative measured beside.");
+void add_bench_program_commands(Command root) {
   for (const BenchProgram& program : kPrograms) {
-    CLI::App* verb = bench->add_subcommand(program.verb, program.description);
-    verb->footer("Takes Google Benchmark's options, such as --benchmark_filter=TEXT.");
-    verb->allow_extras();
-    verb->callback([verb, &program] { become(program.file, verb->remaining()); });
+    Command command = bench_group(root).subcommand(program.verb, program.description);
+    command.footer("Takes Google Benchmark's options, such as --benchmark_filter=TEXT.");
+    auto arguments = std::make_shared<std::vector<std::string>>();
+    command.take_unknown(*arguments);
+    command.on_run([&program, arguments]() -> int { replace_process(program.file, *arguments); });
   }
 }
 

@@ -32,27 +32,18 @@ void ProgressBar::finish() {
   open_ = false;
 }
 
-std::string text_table(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+void StagedProgress::show(const std::string& stage, double fraction) {
+  if (!bar_ || stage != stage_) {
+    finish();
+    stage_ = stage;
+    bar_.emplace(stage);
   }
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - row[i].size(), ' ');
-      text += i == 0 ? row[i] + padding : "  " + padding + row[i];
-    }
-    text += '\n';
-  }
-  return text;
+  bar_->show(fraction, "");
 }
 
-std::string number(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+void StagedProgress::finish() {
+  if (bar_) bar_->finish();
+  bar_.reset();
 }
 
 }  // namespace furrow::cli

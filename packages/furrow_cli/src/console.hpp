@@ -1,19 +1,19 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace furrow::cli {
 
 /// A bar that is drawn anew on a terminal; in a log, a line at every tenth. On standard error, so
-/// that what a verb prints can be piped. Not thread-safe.
+/// that what a command prints can be piped. Not thread-safe.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string_view label);
   /// `fraction` in [0, 1]; `detail` stands behind the bar.
   void show(double fraction, std::string_view detail);
-  /// Leaves the line.
+  /// Ends the line.
   void finish();
 
  private:
@@ -23,10 +23,16 @@ class ProgressBar {
   bool open_ = false;
 };
 
-/// Columns of text, the first left and the others right aligned.
-[[nodiscard]] std::string text_table(const std::vector<std::vector<std::string>>& rows);
+/// A bar for each stage of the work, one after the other.
+class StagedProgress {
+ public:
+  /// `fraction` in [0, 1] of this stage.
+  void show(const std::string& stage, double fraction);
+  void finish();
 
-/// With a fixed number of decimals.
-[[nodiscard]] std::string number(double value, int decimals);
+ private:
+  std::string stage_;
+  std::optional<ProgressBar> bar_;
+};
 
 }  // namespace furrow::cli

@@ -1,20 +1,15 @@
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
-#include "command.hpp"
-#include "console.hpp"
-#include "furrow_annotation/coco.hpp"
+#include "commands.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_vision/annotated_image.hpp"
-#include "furrow_vision/image_file.hpp"
-#include "furrow_vision/overlay.hpp"
+#include "furrow_core/text.hpp"
+#include "furrow_evaluation/image_detection.hpp"
+#include "output_options.hpp"
 #include "vision_options.hpp"
 
 namespace furrow::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kDefaultResolution_mm = 1.15;
 
@@ -23,92 +18,48 @@ struct DetectOptions {
   std::vector<std::string> images;
   std::string out = "detections";
   double min_score = 0.1;
+  bool force = false;
 };
 
-/// Names of images in several folders may agree; outputs may not.
-fs::path output_name(const fs::path& folder, const fs::path& image, std::size_t index) {
-  fs::path name = folder / (image.stem().string() + ".png");
-  if (fs::exists(name)) {
-    name = folder / (image.stem().string() + "_" + std::to_string(index) + ".png");
+int detect(const DetectOptions& options) {
+  evaluation::DetectorChoices choices = options.vision.choices;
+  if (choices.detectors.empty()) {
+    choices.detectors = {choices.models.empty() ? "index" : "one_stage"};
   }
-  return name;
-}
-
-int detect(DetectOptions options) {
-  if (options.vision.detectors.empty()) {
-    options.vision.detectors = {options.vision.models.empty() ? "index" : "one_stage"};
-  }
-  auto detectors = make_detectors(options.vision);
-  if (detectors.size() != 1) throw ConfigError("--detector: furrow detect runs one at a time");
-  vision::Detector& detector = *detectors.front().detector;
-  std::error_code failure;
-  fs::create_directories(options.out, failure);
-  if (failure) throw ConfigError(options.out + ": cannot make the folder: " + failure.message());
-
-  annotation::Dataset found{.name = "detections of " + detectors.front().name,
-                            .classes = detector.classes(),
-                            .images = {}};
+  const auto detectors = evaluation::make_detectors(choices);
+  if (detectors.size() != 1) throw ConfigError("--detector: give one; furrow detect runs only one");
+  const OutputFolder folder = claim_folder(options.out, {"detections.json"}, options.force);
+  const evaluation::ImageDetectionResult result = evaluation::detect_images(
+      detectors.front(),
+      {.images = {options.images.begin(), options.images.end()},
+       .resolution_mm_per_px = options.vision.resolution_mm_per_px.value_or(kDefaultResolution_mm),
+       .min_score = options.min_score,
+       .folder = folder.path(),
+       .overwrite = options.force ? Overwrite::kYes : Overwrite::kNo});
+  for (const std::string& fault : result.faults) std::cerr << "furrow: " << fault << '\n';
   std::vector<std::vector<std::string>> table = {{"image", "plants", "crops", "weeds"}};
-  int faults = 0;
-  for (std::size_t i = 0; i < options.images.size(); ++i) {
-    annotation::AnnotatedImage image;
-    image.path = options.images[i];
-    const auto loaded =
-        load_image(image, options.vision.resolution_mm_per_px.value_or(kDefaultResolution_mm));
-    detector.reset();  // images on their own are no sequence
-    if (!loaded.ok()) {
-      std::cerr << "furrow: " << loaded.error().message << '\n';  // names the file
-      ++faults;
-      continue;
-    }
-    auto plants = detector.detect(loaded->view());
-    if (!plants.ok()) {
-      std::cerr << "furrow: " << options.images[i] << ": " << plants.error().message << '\n';
-      ++faults;
-      continue;
-    }
-    std::erase_if(*plants, [&](const auto& plant) { return plant.score < options.min_score; });
-    cv::Mat picture = image.bgr.clone();
-    vision::draw_instances(*plants, detector.classes(), true, picture);
-    const fs::path file = output_name(options.out, image.path, i);
-    if (const Status written = vision::write_image(file, picture); !written.ok()) {
-      throw std::runtime_error(written.error().message);
-    }
-    const auto crops = std::count_if(plants->begin(), plants->end(), [](const auto& plant) {
-      return plant.crop_probability >= 0.5;
-    });
-    const auto count = static_cast<std::ptrdiff_t>(plants->size());
-    table.push_back({file.string(), std::to_string(count), std::to_string(crops),
-                     std::to_string(count - crops)});
-    image.path = fs::absolute(image.path);
-    image.width_px = image.bgr.cols;
-    image.height_px = image.bgr.rows;
-    image.instances = vision::to_annotations(*plants, detector.classes());
-    image.bgr.release();
-    found.images.push_back(std::move(image));
+  for (const evaluation::DetectedImage& image : result.images) {
+    table.push_back({image.picture.string(), std::to_string(image.plants),
+                     std::to_string(image.crops), std::to_string(image.plants - image.crops)});
   }
-  const fs::path json = fs::path(options.out) / "detections.json";
-  if (const Status written = annotation::write_coco(json, found); !written.ok()) {
-    throw std::runtime_error(written.error().message);
-  }
-  std::cout << text_table(table) << json.string() << '\n';
-  return faults == 0 ? 0 : 1;
+  std::cout << text_table(table) << result.json.string() << '\n';
+  return result.faults.empty() ? 0 : 1;
 }
 
 }  // namespace
 
-void add_detect_command(CLI::App& app, int& exit_code) {
+void add_detect_command(Command root) {
   auto options = std::make_shared<DetectOptions>();
-  CLI::App* command = app.add_subcommand(
+  Command command = root.subcommand(
       "detect",
-      "Finds plants in images: pictures with classes, scores, stems and areas, and COCO.");
-  command->add_option("images", options->images, "image files")->required();
+      "Detects plants in images. Writes pictures with classes, scores, stems and areas, and COCO.");
+  command.option("images", options->images, "image files").required();
   add_vision_options(command, options->vision);
-  command->add_option("--out", options->out, "folder")->capture_default_str();
-  command->add_option("--min-score", options->min_score, "plants below are left out")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->callback([options, &exit_code] { exit_code = detect(*options); });
+  command.option("--out", options->out, "folder; numbered when it holds a detections.json");
+  command.option("--min-score", options->min_score, "plants with a lower score are left out")
+      .range(0.0, 1.0);
+  add_force_option(command, options->force);
+  command.on_run([options] { return detect(*options); });
 }
 
 }  // namespace furrow::cli

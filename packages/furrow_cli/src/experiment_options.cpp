@@ -1,13 +1,11 @@
 #include "experiment_options.hpp"
 
 #include <filesystem>
-#include <iostream>
-#include <stdexcept>
+#include <utility>
 
 #include "furrow_components/field_source.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_core/file.hpp"
-#include "share.hpp"
+#include "furrow_launch/installation.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -15,75 +13,64 @@ namespace {
 constexpr std::int64_t kQuickSeeds = 4;
 constexpr double kQuickLength_m = 8.0;
 
-void write_result(const std::string& file, const std::string& text) {
-  if (file.empty()) return;
-  if (const Status written = write_file_atomically(file, text); !written.ok()) {
-    throw std::runtime_error(written.error().message);
-  }
-  std::cout << file << '\n';
+void add_field_options(Command command, ExperimentOptions& options) {
+  command.option("--seeds", options.sampling.seeds, "generated fields for each density")
+      .at_least(1);
+  command.option("--seed", options.sampling.first_seed, "seed of the first field");
+  command.option("--length", options.sampling.row.length_m, "length of a generated row, m")
+      .positive();
+  command.flag("--crop", options.sampling.row.crop, "generated rows contain crop");
+  command.option("--pattern", options.sampling.row.pattern, "pattern of the weeds in the rows")
+      .choices({"poisson", "clusters"});
+  command.option("--field", options.fields,
+                 "plants as CSV or GeoJSON in place of the generated densities");
+}
+
+void add_planner_options(Command command, ExperimentOptions& options) {
+  planning::PlannerParameters& planner = options.planner;
+  command.option("--planners", options.planners,
+                 "PLANNER/ASSIGNMENT, such as exact/joint; or all, or main");
+  command.option("--views", options.views, "observation models").choices({"segment", "rolling"});
+  command.option("--speed", planner.speed_mps, "speed of the robot, m/s");
+  command.option("--kinematics", planner.kinematics, "kinematics of the axes")
+      .choices({"velocity", "trapezoid"});
+  command.option("--rho", planner.rho, "cutoff of the feasibility");
+  command.option("--omega", planner.omega, "steepness of the feasibility, 1/s");
+  command.option("--protection-zone", planner.protection_zone_mm,
+                 "least distance from a footprint's rim to a crop's stem, mm");
+  command.option("--segment-length", planner.segment_length_m, "length of a segment, m");
+  command.flag("--fire-while-moving", planner.fire_while_moving,
+               "nozzles may fire while their axis moves");
+}
+
+void add_setup_options(Command command, ExperimentOptions& options) {
+  experiments::SetupParameters& setup = options.setup;
+  command.option("--axes", setup.axes, "number of axes");
+  command.option("--axis-velocity", setup.axis_velocity_mps, "velocity of an axis, m/s");
+  command.option("--axis-acceleration", setup.axis_acceleration_mps2,
+                 "acceleration of an axis, m/s2");
+  command.option("--frame-period", setup.frame_period_s, "time between observations, s");
+  command.option("--look-ahead", setup.look_ahead_m,
+                 "distance before the first axis at which plants come into view, m");
+  command.option("--threads", options.threads, "worker threads; 0: one for each processor")
+      .range(0, 256);
 }
 
 }  // namespace
 
-void add_experiment_options(CLI::App* command, ExperimentOptions& options) {
-  command->add_option("--seeds", options.sampling.seeds, "generated fields for each density")
-      ->capture_default_str();
-  command->add_option("--seed", options.sampling.first_seed, "of the first field")
-      ->capture_default_str();
-  command->add_option("--length", options.sampling.row.length_m, "of a generated row, m")
-      ->capture_default_str();
-  command->add_flag("--crop", options.sampling.row.crop, "generated rows have crop in them");
-  command->add_option("--pattern", options.sampling.row.pattern, "of the weeds in generated rows")
-      ->check(CLI::IsMember({"poisson", "clusters"}))
-      ->capture_default_str();
-  command->add_option("--planners", options.planners,
-                      "PLANNER/ASSIGNMENT, such as exact/joint; or all, or main");
-  command->add_option("--views", options.views, "observation models")
-      ->check(CLI::IsMember({"segment", "rolling"}))
-      ->capture_default_str();
-  command->add_option("--field", options.fields,
-                      "plants as CSV or GeoJSON, instead of the generated densities");
-  command->add_option("--speed", options.planner.speed_mps, "of the robot, m/s")
-      ->capture_default_str();
-  command->add_option("--kinematics", options.planner.kinematics, "of the axes")
-      ->check(CLI::IsMember({"velocity", "trapezoid"}))
-      ->capture_default_str();
-  command->add_option("--rho", options.planner.rho, "cutoff on the feasibility")
-      ->capture_default_str();
-  command->add_option("--omega", options.planner.omega, "steepness of the feasibility, 1/s")
-      ->capture_default_str();
-  command
-      ->add_option("--protection-zone", options.planner.protection_zone_mm,
-                   "between a footprint's rim and a crop's stem, mm")
-      ->capture_default_str();
-  command
-      ->add_option("--segment-length", options.planner.segment_length_m, "of the segment view, m")
-      ->capture_default_str();
-  command->add_flag("--fire-while-moving", options.planner.fire_while_moving,
-                    "nozzles may fire in passing");
-  command->add_option("--axes", options.setup.axes, "number of axes")->capture_default_str();
-  command->add_option("--axis-velocity", options.setup.axis_velocity_mps, "m/s")
-      ->capture_default_str();
-  command->add_option("--axis-acceleration", options.setup.axis_acceleration_mps2, "m/s2")
-      ->capture_default_str();
-  command->add_option("--frame-period", options.setup.frame_period_s, "between observations, s")
-      ->capture_default_str();
-  command
-      ->add_option("--look-ahead", options.setup.look_ahead_m,
-                   "how far before the first axis plants are seen, m")
-      ->capture_default_str();
-  command->add_option("--threads", options.threads, "0: as many as the machine has")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
-  command->add_flag("--quick", options.quick, "fewer and shorter fields; the main planners");
-  command->add_option("--json", options.json, "file of the results");
-  command->add_option("--html", options.html, "file of the report");
-  command->parse_complete_callback([&options, command] {
-    if (!options.quick) return;
-    if (command->count("--seeds") == 0) options.sampling.seeds = kQuickSeeds;
-    if (command->count("--length") == 0) options.sampling.row.length_m = kQuickLength_m;
-    if (command->count("--planners") == 0) options.planners = {"main"};
-  });
+void add_experiment_options(Command command, ExperimentOptions& options) {
+  add_field_options(command, options);
+  add_planner_options(command, options);
+  add_setup_options(command, options);
+  command.flag("--quick", options.quick, "fewer and shorter fields; the main planners");
+  add_result_options(command, options.results, true);
+}
+
+void apply_quick(Command command, ExperimentOptions& options) {
+  if (!options.quick) return;
+  if (!command.given("--seeds")) options.sampling.seeds = kQuickSeeds;
+  if (!command.given("--length")) options.sampling.row.length_m = kQuickLength_m;
+  if (!command.given("--planners")) options.planners = {"main"};
 }
 
 std::vector<experiments::PlannerChoice> chosen_planners(const ExperimentOptions& options) {
@@ -105,7 +92,7 @@ std::vector<experiments::PlannerChoice> chosen_planners(const ExperimentOptions&
 
 std::vector<experiments::FieldCase> chosen_fields(const ExperimentOptions& options) {
   if (options.fields.empty()) return experiments::paper_field_cases();
-  const auto species = components::load_species(share_folder() / "params" / "species.yaml");
+  const auto species = components::load_species(launch::share_folder() / "params" / "species.yaml");
   std::vector<experiments::FieldCase> cases;
   for (const std::string& file : options.fields) {
     const std::string extension = std::filesystem::path(file).extension().string();
@@ -117,12 +104,6 @@ std::vector<experiments::FieldCase> chosen_fields(const ExperimentOptions& optio
     cases.push_back(std::move(*field));
   }
   return cases;
-}
-
-void write_results(const ExperimentOptions& options, const std::string& json,
-                   const std::string& html) {
-  write_result(options.json, json);
-  write_result(options.html, html);
 }
 
 }  // namespace furrow::cli

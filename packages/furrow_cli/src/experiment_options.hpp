@@ -1,11 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "furrow_experiments/evaluation.hpp"
 #include "furrow_experiments/planner_choice.hpp"
+#include "output_options.hpp"
 
 namespace furrow::cli {
 
@@ -19,19 +21,18 @@ struct ExperimentOptions {
   std::vector<std::string> fields;
   std::int64_t threads = 0;
   bool quick = false;
-  std::string json;
-  std::string html;
+  ResultOptions results;
 };
 
-void add_experiment_options(CLI::App* command, ExperimentOptions& options);
+void add_experiment_options(Command command, ExperimentOptions& options);
 
-/// Throws ConfigError for planners and fields that are not there.
+/// With --quick, fewer and shorter fields and the main planners, where the user gave none. Call it
+/// when the command runs.
+void apply_quick(Command command, ExperimentOptions& options);
+
+/// Throws ConfigError for planners and fields that do not exist.
 [[nodiscard]] std::vector<experiments::PlannerChoice> chosen_planners(
     const ExperimentOptions& options);
 [[nodiscard]] std::vector<experiments::FieldCase> chosen_fields(const ExperimentOptions& options);
-
-/// Writes the files that were asked for and says so. Throws where that fails.
-void write_results(const ExperimentOptions& options, const std::string& json,
-                   const std::string& html);
 
 }  // namespace furrow::cli

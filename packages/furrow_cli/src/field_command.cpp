@@ -1,14 +1,13 @@
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
-#include "command.hpp"
-#include "console.hpp"
+#include "commands.hpp"
+#include "field_file.hpp"
 #include "furrow_components/field_source.hpp"
-#include "furrow_core/file.hpp"
-#include "furrow_field/field_csv.hpp"
-#include "furrow_field/field_geojson.hpp"
+#include "furrow_core/text.hpp"
 #include "furrow_field/statistics.hpp"
-#include "share.hpp"
+#include "furrow_launch/installation.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -18,64 +17,60 @@ struct FieldOptions {
   double length_m = 0.0;
   std::uint64_t seed = 1;
   std::string out = "field.csv";
+  bool force = false;
 };
 
 field::FieldModel load(const FieldOptions& options) {
-  const auto species = components::load_species(share_folder() / "params" / "species.yaml");
-  return components::load_field(find_shipped(options.field, "fields"), species, options.length_m,
-                                options.seed);
+  const auto species = components::load_species(launch::share_folder() / "params" / "species.yaml");
+  return components::load_field(launch::find_shipped(options.field, "fields"), species,
+                                options.length_m, options.seed);
 }
 
-void generate(const FieldOptions& options) {
+int generate(const FieldOptions& options) {
+  FieldFile file(options.out, options.force);
   const field::FieldModel field = load(options);
-  const std::string extension = std::filesystem::path(options.out).extension().string();
-  if (extension != ".csv" && extension != ".geojson") {
-    throw ConfigError("--out: " + options.out + " must end in .csv or .geojson");
-  }
-  const auto text = extension == ".csv" ? field::to_csv(field) : field::to_geojson(field);
-  if (!text.ok()) throw ConfigError(text.error().message);
-  if (const Status written = write_file_atomically(options.out, *text); !written.ok()) {
-    throw std::runtime_error(written.error().message);
-  }
-  std::cout << options.out << ": " << field.plants.size() << " plants (" << field.source << ")\n";
+  file.write(field);
+  std::cout << file.path().string() << ": " << field.plants.size() << " plants (" << field.source
+            << ")\n";
+  return 0;
 }
 
-void show(const FieldOptions& options) {
+int show(const FieldOptions& options) {
   const field::FieldModel field = load(options);
   const field::FieldStatistics statistics = field::statistics_of(field);
   std::cout << field.name << ": " << field.source << '\n'
-            << number(field.length_m, 2) << " m x " << number(field.width_m, 2) << " m, "
+            << fixed(field.length_m, 2) << " m x " << fixed(field.width_m, 2) << " m, "
             << statistics.crops << " crops, " << statistics.weeds << " weeds, "
-            << number(statistics.weeds_per_m2, 2) << " weeds/m2\n";
+            << fixed(statistics.weeds_per_m2, 2) << " weeds/m2\n";
   std::vector<std::vector<std::string>> rows = {{"species", "plants"}};
   for (const auto& species : statistics.by_species) {
     rows.push_back({species.species, std::to_string(species.plants)});
   }
   std::cout << text_table(rows);
+  return 0;
 }
 
-void add_field_options(CLI::App* command, FieldOptions& options) {
-  command
-      ->add_option("field", options.field,
-                   "a shipped preset, a preset file, or plants as CSV or GeoJSON")
-      ->capture_default_str();
-  command->add_option("--length", options.length_m, "metres of row of a generated field");
-  command->add_option("--seed", options.seed, "of a generated field")->capture_default_str();
+void add_field_options(Command command, FieldOptions& options) {
+  command.option("field", options.field,
+                 "a shipped preset, a preset file, or plants as CSV or GeoJSON");
+  command.option("--length", options.length_m, "length of a generated row, m; 0: the preset's")
+      .at_least(0.0);
+  command.option("--seed", options.seed, "seed of a generated field");
 }
 
 }  // namespace
 
-void add_field_command(CLI::App& app, int& /*exit_code*/) {
-  CLI::App* command = app.add_subcommand("field", "Makes and shows field models.");
-  command->require_subcommand(1);
+void add_field_commands(Command root) {
+  Command group = field_group(root);
   auto options = std::make_shared<FieldOptions>();
-  CLI::App* generate_command = command->add_subcommand("generate", "Writes a field to a file.");
+  Command generate_command = group.subcommand("generate", "Writes a field to a file.");
   add_field_options(generate_command, *options);
-  generate_command->add_option("--out", options->out, ".csv or .geojson")->capture_default_str();
-  generate_command->callback([options] { generate(*options); });
-  CLI::App* show_command = command->add_subcommand("show", "Counts the plants of a field.");
+  generate_command.option("--out", options->out, "file that ends in .csv or .geojson");
+  add_force_option(generate_command, options->force);
+  generate_command.on_run([options] { return generate(*options); });
+  Command show_command = group.subcommand("show", "Counts the plants of a field.");
   add_field_options(show_command, *options);
-  show_command->callback([options] { show(*options); });
+  show_command.on_run([options] { return show(*options); });
 }
 
 }  // namespace furrow::cli

@@ -1,13 +1,13 @@
 #include <iostream>
+#include <memory>
+#include <optional>
 
-#include "command.hpp"
-#include "console.hpp"
-#include "furrow_core/file.hpp"
+#include "commands.hpp"
 #include "furrow_graph/graph_check.hpp"
-#include "furrow_msgs/furrow_msgs.h"
-#include "graph_picture.hpp"
-#include "graph_setup.hpp"
-#include "share.hpp"
+#include "furrow_launch/graph_picture.hpp"
+#include "furrow_launch/graph_setup.hpp"
+#include "furrow_launch/installation.hpp"
+#include "output_options.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -17,6 +17,7 @@ struct GraphOptions {
   std::string deploy;
   std::vector<std::string> settings;
   std::string svg;
+  bool force = false;
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -26,20 +27,17 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 int show(const GraphOptions& options) {
-  graph::Registry registry = make_registry();
-  const PreparedGraph prepared = prepare_graph(options.graph, options.settings);
+  std::optional<OutputFile> svg;
+  if (!options.svg.empty()) svg = claim_file(options.svg, options.force, "--svg");
+  graph::Registry registry = launch::make_registry();
+  const launch::PreparedGraph prepared = launch::prepare_graph(options.graph, options.settings);
   const auto connections = graph::check_graph(prepared.spec, registry);
   const auto deployment = graph::load_deployment(
-      find_shipped(options.deploy.empty() ? "composed" : options.deploy, "deploy"));
+      launch::find_shipped(options.deploy.empty() ? "composed" : options.deploy, "deploy"));
   const auto processes = graph::place_components(prepared.spec, deployment);
-  if (!options.svg.empty()) {
-    const Status written =
-        write_file_atomically(options.svg, graph_picture(prepared.spec, connections, processes));
-    if (!written.ok()) {
-      std::cerr << "furrow: " << written.error().message << '\n';
-      return 1;
-    }
-    std::cout << "picture: " << options.svg << '\n';
+  if (svg) {
+    write_or_throw(*svg, launch::graph_picture(prepared.spec, connections, processes));
+    std::cout << "picture: " << svg->path().string() << '\n';
     return 0;
   }
   if (!options.deploy.empty()) {
@@ -58,41 +56,44 @@ int show(const GraphOptions& options) {
   return 0;
 }
 
-void check(const GraphOptions& options) {
-  graph::Registry registry = make_registry();
-  const PreparedGraph prepared = prepare_graph(options.graph, options.settings);
+int check(const GraphOptions& options) {
+  graph::Registry registry = launch::make_registry();
+  const launch::PreparedGraph prepared = launch::prepare_graph(options.graph, options.settings);
   const auto connections = graph::check_graph(prepared.spec, registry);
   if (!options.deploy.empty()) {
-    (void)graph::place_components(prepared.spec,
-                                  graph::load_deployment(find_shipped(options.deploy, "deploy")));
+    (void)graph::place_components(
+        prepared.spec, graph::load_deployment(launch::find_shipped(options.deploy, "deploy")));
   }
   std::cout << prepared.spec.name << " is well: " << prepared.spec.components.size()
             << " components, " << connections.size() << " topics\n";
+  return 0;
 }
 
-void add_graph_options(CLI::App* command, GraphOptions& options) {
-  command->add_option("graph", options.graph, "graph file, or the name of a shipped one")
-      ->capture_default_str();
-  command->add_option("--deploy", options.deploy, "deployment to place the components by");
-  command->add_option("--set", options.settings, "COMPONENT.KEY=VALUE over the file")->take_all();
+void add_graph_options(Command command, GraphOptions& options) {
+  command.option("graph", options.graph, "graph file, or the name of a shipped graph");
+  command.option("--deploy", options.deploy, "deployment that places the components");
+  command.option("--set", options.settings, "COMPONENT.KEY=VALUE overrides a parameter");
 }
 
 }  // namespace
 
-void add_graph_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("graph", "Looks at a graph without running it.");
-  command->require_subcommand(1);
+void add_graph_commands(Command root) {
+  Command group = root.group("graph", "Inspects a graph without running it.");
   auto options = std::make_shared<GraphOptions>();
-  CLI::App* check_command = command->add_subcommand(
-      "check", "Checks classes, wiring, types, QoS and parameters of a graph.");
+  Command check_command =
+      group.subcommand("check", "Checks classes, wiring, types, QoS and parameters of a graph.");
   add_graph_options(check_command, *options);
-  check_command->callback([options] { check(*options); });
-  CLI::App* show_command = command->add_subcommand("show", "Lists who publishes and reads what.");
+  check_command.on_run([options] { return check(*options); });
+  Command show_command =
+      group.subcommand("show", "Lists publishers and subscribers of each topic.");
   add_graph_options(show_command, *options);
-  show_command->add_option("--svg", options->svg, "draw it into this file instead");
-  show_command->callback([options, &exit_code] { exit_code = show(*options); });
-  command->add_subcommand("topics", "Prints the table of topics (docs/reference/topics.md).")
-      ->callback([] { std::cout << msgs::topics_markdown(); });
+  show_command.option("--svg", options->svg, "draw the graph into this file instead");
+  add_force_option(show_command, options->force);
+  show_command.on_run([options] { return show(*options); });
+  group.subcommand("topics", "Prints the table of topics (docs/reference/topics.md).").on_run([] {
+    std::cout << msgs::topics_markdown();
+    return 0;
+  });
 }
 
 }  // namespace furrow::cli

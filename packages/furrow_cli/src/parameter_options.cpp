@@ -1,6 +1,7 @@
 #include "parameter_options.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace furrow::cli {
 namespace {
@@ -11,12 +12,14 @@ std::string option_name(const ParameterInfo& info) {
   return name;
 }
 
-std::string description(const ParameterInfo& info) {
+std::string description_of(const ParameterInfo& info) {
   return info.unit.empty() ? info.description : info.description + " [" + info.unit + "]";
 }
 
-CLI::Validator range(const ParameterInfo& info) {
-  return CLI::Range(info.min, info.max);
+template <class Value>
+void add_number(Command command, const ParameterInfo& info, Value& value) {
+  Option option = command.option(option_name(info), value, description_of(info));
+  if (std::isfinite(info.min) || std::isfinite(info.max)) option.range(info.min, info.max);
 }
 
 }  // namespace
@@ -26,38 +29,29 @@ bool ParameterOptions::wanted(const ParameterInfo& info) const {
 }
 
 void ParameterOptions::visit(const ParameterInfo& info, bool& value) {
-  if (wanted(info)) command_.add_flag(option_name(info), value, description(info));
+  if (wanted(info)) command_.flag(option_name(info), value, description_of(info));
 }
 
 void ParameterOptions::visit(const ParameterInfo& info, std::int64_t& value) {
-  if (!wanted(info)) return;
-  command_.add_option(option_name(info), value, description(info))
-      ->check(range(info))
-      ->capture_default_str();
+  if (wanted(info)) add_number(command_, info, value);
 }
 
 void ParameterOptions::visit(const ParameterInfo& info, double& value) {
-  if (!wanted(info)) return;
-  command_.add_option(option_name(info), value, description(info))
-      ->check(range(info))
-      ->capture_default_str();
+  if (wanted(info)) add_number(command_, info, value);
 }
 
 void ParameterOptions::visit(const ParameterInfo& info, std::string& value) {
   if (!wanted(info)) return;
-  CLI::Option* option =
-      command_.add_option(option_name(info), value, description(info))->capture_default_str();
-  if (!info.choices.empty()) option->check(CLI::IsMember(info.choices));
+  Option option = command_.option(option_name(info), value, description_of(info));
+  if (!info.choices.empty()) option.choices(info.choices);
 }
 
 void ParameterOptions::visit(const ParameterInfo& info, std::vector<double>& value) {
-  if (wanted(info)) {
-    command_.add_option(option_name(info), value, description(info))->check(range(info));
-  }
+  if (wanted(info)) add_number(command_, info, value);
 }
 
 void ParameterOptions::visit(const ParameterInfo& info, std::vector<std::string>& value) {
-  if (wanted(info)) command_.add_option(option_name(info), value, description(info))->take_all();
+  if (wanted(info)) command_.option(option_name(info), value, description_of(info));
 }
 
 }  // namespace furrow::cli

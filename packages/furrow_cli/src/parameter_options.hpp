@@ -1,19 +1,22 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "command_line.hpp"
 #include "furrow_core/parameters.hpp"
 
 namespace furrow::cli {
 
-/// Adds an option for each parameter of a struct, which the options then fill: "split_mb" becomes
-/// --split-mb, with its description, unit, range and choices. The struct must outlive the parsing.
+/// Adds an option for each parameter of a struct and lets the command line fill it: "split_mb"
+/// becomes --split-mb, with its description, unit, range and choices. The struct must outlive the
+/// command line.
 class ParameterOptions final : public ParameterVisitor {
  public:
   /// Parameters named in `leave_out` get no option.
-  explicit ParameterOptions(CLI::App& command, std::vector<std::string> leave_out = {})
+  explicit ParameterOptions(Command command, std::vector<std::string> leave_out = {})
       : command_(command), leave_out_(std::move(leave_out)) {}
 
   void visit(const ParameterInfo& info, bool& value) override;
@@ -25,7 +28,7 @@ class ParameterOptions final : public ParameterVisitor {
 
  private:
   [[nodiscard]] bool wanted(const ParameterInfo& info) const;
-  CLI::App& command_;
+  Command command_;
   std::vector<std::string> leave_out_;
 };
 

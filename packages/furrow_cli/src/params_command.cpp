@@ -1,9 +1,9 @@
 #include <cmath>
 #include <iostream>
+#include <memory>
 
-#include "command.hpp"
-#include "console.hpp"
-#include "share.hpp"
+#include "commands.hpp"
+#include "furrow_launch/installation.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -61,7 +61,7 @@ void print_text(const graph::ComponentClass& type) {
 }
 
 void describe(const std::string& class_name, bool markdown) {
-  graph::Registry registry = make_registry();
+  graph::Registry registry = launch::make_registry();
   if (class_name.empty()) {
     registry.load_all();
   } else {
@@ -80,19 +80,21 @@ void describe(const std::string& class_name, bool markdown) {
 
 }  // namespace
 
-void add_params_command(CLI::App& app, int& /*exit_code*/) {
+void add_params_command(Command root) {
   struct Options {
     std::string class_name;
     bool markdown = false;
   };
-  CLI::App* command = app.add_subcommand("params", "Looks at parameters.");
-  command->require_subcommand(1);
+  Command group = root.group("params", "Looks at parameters.");
   auto options = std::make_shared<Options>();
-  CLI::App* describe_command = command->add_subcommand(
+  Command command = group.subcommand(
       "describe", "Lists the parameters of the component classes, with defaults and ranges.");
-  describe_command->add_option("class", options->class_name, "one class; all when left out");
-  describe_command->add_flag("--markdown", options->markdown, "as docs/reference/parameters.md");
-  describe_command->callback([options] { describe(options->class_name, options->markdown); });
+  command.option("class", options->class_name, "one class; default: all");
+  command.flag("--markdown", options->markdown, "print docs/reference/parameters.md");
+  command.on_run([options] {
+    describe(options->class_name, options->markdown);
+    return 0;
+  });
 }
 
 }  // namespace furrow::cli

@@ -6,12 +6,12 @@
 #include <map>
 #include <sstream>
 
-#include "command.hpp"
+#include "commands.hpp"
 #include "console.hpp"
 #include "control_input.hpp"
+#include "furrow_launch/signals.hpp"
 #include "furrow_recording/dds_player.hpp"
-#include "signals.hpp"
-#include "wire_options.hpp"
+#include "transport_options.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -23,7 +23,7 @@ struct PlayOptions {
   double duration_s = 0.0;
   std::vector<std::string> remaps;
   double wait_s = 2.0;
-  WireOptions wire;
+  launch::TransportOptions transport;
 };
 
 recording::Player open(PlayOptions options) {
@@ -70,7 +70,7 @@ class Controls {
     }
     const auto status = player_.status();
     std::cerr << (status.paused ? "paused at " : "playing at ")
-              << number((status.position - begin_).to_seconds(), 3) << " s, " << status.messages
+              << fixed((status.position - begin_).to_seconds(), 3) << " s, " << status.messages
               << " messages\n";
     return true;
   }
@@ -96,7 +96,7 @@ class Controls {
 
 int report(const recording::DdsPlayerStatus& status) {
   std::cout << status.messages << " messages, " << status.dropped << " lost, timing error p99 "
-            << number(status.lateness_p99_s * 1e3, 3) << " ms\n";
+            << fixed(status.lateness_p99_s * 1e3, 3) << " ms\n";
   if (status.faults > 0) {
     std::cerr << "furrow: " << status.faults
               << " damaged parts left out, the last: " << status.last_fault << '\n';
@@ -109,8 +109,9 @@ int play(const PlayOptions& options) {
   const Time begin = opened.begin();
   const double length_s = (opened.end() - begin).to_seconds();
   std::atomic<bool> stopped = false;
-  SignalWatch signals([&stopped] { stopped = true; });
-  dds::DdsTransport transport(wire_parameters(options.wire, "furrow_play"));
+  launch::SignalPipe signals({SIGINT, SIGTERM});
+  const launch::SignalWatch watch(signals, [&stopped](int) { stopped = true; });
+  dds::DdsTransport transport(launch::transport_parameters(options.transport, "furrow_play"));
   recording::DdsPlayer player(transport, std::move(opened),
                               {.wait_for_readers = Duration::seconds(options.wait_s)});
   Controls controls(player, begin);
@@ -122,7 +123,7 @@ int play(const PlayOptions& options) {
     if (!terminal) continue;
     const auto status = player.status();
     std::cerr << '\r' << (status.paused ? "paused" : "playing") << ' '
-              << number((status.position - begin).to_seconds(), 1) << " of " << number(length_s, 1)
+              << fixed((status.position - begin).to_seconds(), 1) << " of " << fixed(length_s, 1)
               << " s\033[K" << std::flush;
   }
   if (terminal) std::cerr << '\n';
@@ -136,39 +137,33 @@ int play(const PlayOptions& options) {
 
 }  // namespace
 
-void add_play_command(CLI::App& app, int& exit_code) {
+void add_play_command(Command root) {
   auto options = std::make_shared<PlayOptions>();
-  CLI::App* command = app.add_subcommand(
+  Command command = root.subcommand(
       "play", "Plays recordings to a running system, with the QoS that was recorded.");
-  command->add_option("files", options->files, "MCAP files, of one recording or one clock")
-      ->required()
-      ->check(CLI::ExistingFile);
-  command->add_option("--rate", options->player.rate, "recorded seconds per second")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->capture_default_str();
-  command->add_option("--start", options->start_s, "seconds from the first message")
-      ->check(CLI::Range(0.0, 1e9));
-  command->add_option("--duration", options->duration_s, "recorded seconds to play; 0: all")
-      ->check(CLI::Range(0.0, 1e9));
-  command->add_flag("--loop", options->player.loop, "begin again at the end");
-  command->add_flag("--pause", options->player.start_paused,
-                    "begin paused; \"resume\" or \"step N\" on the keyboard goes on");
+  command.option("files", options->files, "MCAP files of one recording, or of one clock")
+      .required()
+      .existing_file();
+  command.option("--rate", options->player.rate, "recorded seconds per second")
+      .range(0.001, 1000.0);
+  command.option("--start", options->start_s, "where to start, s from the first message")
+      .range(0.0, 1e9);
+  command.option("--duration", options->duration_s, "recorded time to play, s; 0: all")
+      .range(0.0, 1e9);
+  command.flag("--loop", options->player.loop, "start again at the end");
+  command.flag("--pause", options->player.start_paused,
+               "start paused; \"resume\" or \"step N\" on the keyboard continues");
+  command.option("--topics", options->player.topics.include,
+                 "names, or patterns with * and ?, to play; default: all");
+  command.option("--exclude", options->player.topics.exclude, "names or patterns not to play");
+  command.option("--remap", options->remaps, "RECORDED=PLAYED: publish a topic by another name");
   command
-      ->add_option("--topics", options->player.topics.include,
-                   "names or patterns with * and ? to play")
-      ->take_all();
-  command->add_option("--exclude", options->player.topics.exclude, "names or patterns to leave out")
-      ->take_all();
-  command->add_option("--remap", options->remaps, "RECORDED=PLAYED names of topics")->take_all();
-  command
-      ->add_option("--clock", options->player.clock_hz,
-                   "publish the recording's time on /clock so many times per recorded second")
-      ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--wait", options->wait_s, "seconds to wait at most until somebody reads")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  add_wire_options(*command, options->wire);
-  command->callback([options, &exit_code] { exit_code = play(*options); });
+      .option("--clock", options->player.clock_hz,
+              "messages on /clock per recorded second; 0: none")
+      .range(0.0, 1e6);
+  command.option("--wait", options->wait_s, "longest wait for a subscriber, s").range(0.0, 3600.0);
+  add_transport_options(command, options->transport);
+  command.on_run([options] { return play(*options); });
 }
 
 }  // namespace furrow::cli

@@ -8,13 +8,13 @@
 #include <mutex>
 #include <optional>
 
-#include "command.hpp"
+#include "commands.hpp"
 #include "console.hpp"
 #include "control_input.hpp"
+#include "furrow_launch/signals.hpp"
 #include "furrow_recording/dds_recorder.hpp"
 #include "parameter_options.hpp"
-#include "signals.hpp"
-#include "wire_options.hpp"
+#include "transport_options.hpp"
 
 namespace furrow::cli {
 namespace {
@@ -26,7 +26,7 @@ struct RecordOptions {
   std::vector<std::string> patterns;
   std::string out;
   double duration_s = 0.0;
-  WireOptions wire;
+  launch::TransportOptions transport;
   recording::RecorderParameters recorder;
 };
 
@@ -61,7 +61,7 @@ const char* state_name(RecorderState state) {
 
 std::string totals(const recording::RecorderStatus& status) {
   return std::to_string(status.messages) + " messages, " +
-         number(static_cast<double>(status.bytes) * 1e-6, 1) + " MB, " +
+         fixed(static_cast<double>(status.bytes) * 1e-6, 1) + " MB, " +
          std::to_string(status.dropped) + " lost";
 }
 
@@ -107,7 +107,7 @@ int report(const recording::RecorderStatus& status, const std::vector<std::strin
   std::vector<std::vector<std::string>> rows = {{"topic", "messages", "MB", "lost"}};
   for (const recording::RecordedTopic& topic : status.topics) {
     rows.push_back({topic.name, std::to_string(topic.messages),
-                    number(static_cast<double>(topic.bytes) * 1e-6, 3),
+                    fixed(static_cast<double>(topic.bytes) * 1e-6, 3),
                     std::to_string(topic.dropped)});
   }
   std::cout << text_table(rows);
@@ -132,8 +132,9 @@ int record(RecordOptions options) {
   if (!options.patterns.empty()) options.recorder.include = options.patterns;
   const std::string stem = stem_of(options.out);
   Requests requests;
-  SignalWatch signals([&requests] { requests.stop(); });
-  dds::DdsTransport transport(wire_parameters(options.wire, "furrow_record"));
+  launch::SignalPipe signals({SIGINT, SIGTERM});
+  const launch::SignalWatch watch(signals, [&requests](int) { requests.stop(); });
+  dds::DdsTransport transport(launch::transport_parameters(options.transport, "furrow_record"));
   recording::DdsRecorder recorder(transport, options.recorder, stem);
   std::cerr << state_name(recorder.status().state) << " to " << stem
             << "_N.mcap; pause, resume, trigger and quit are taken from the keyboard\n";
@@ -146,7 +147,7 @@ int record(RecordOptions options) {
     const auto status = recorder.status();
     const double passed_s = std::chrono::duration<double>(Clock::now() - start).count();
     if (terminal) {
-      std::cerr << '\r' << state_name(status.state) << ' ' << number(passed_s, 0)
+      std::cerr << '\r' << state_name(status.state) << ' ' << fixed(passed_s, 0)
                 << " s: " << totals(status) << "\033[K" << std::flush;
     }
     if (status.state == RecorderState::kStopped) break;
@@ -160,21 +161,19 @@ int record(RecordOptions options) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app, int& exit_code) {
+void add_record_command(Command root) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand(
-      "record", "Records topics of a running system, of any type, into MCAP files.");
-  command->add_option("topics", options->patterns,
-                      "names or patterns with * and ?; all when there is none");
-  command->add_option("--out", options->out,
-                      "path of the files, to which _0.mcap, _1.mcap, ... is added; by default "
-                      "the date and time");
-  command->add_option("--duration", options->duration_s, "seconds to record; 0: until stopped")
-      ->check(CLI::Range(0.0, 1e6));
-  add_wire_options(*command, options->wire);
-  ParameterOptions recorder(*command, {"include"});
+  Command command =
+      root.subcommand("record", "Records topics of a running system, of any type, to MCAP files.");
+  command.option("topics", options->patterns, "names, or patterns with * and ?; default: all");
+  command.option("--out", options->out,
+                 "path of the files, without _0.mcap, _1.mcap, ...; default: date and time");
+  command.option("--duration", options->duration_s, "time to record, s; 0: until stopped")
+      .range(0.0, 1e6);
+  add_transport_options(command, options->transport);
+  ParameterOptions recorder(command, {"include"});
   options->recorder.visit(recorder);
-  command->callback([options, &exit_code] { exit_code = record(*options); });
+  command.on_run([options] { return record(*options); });
 }
 
 }  // namespace furrow::cli

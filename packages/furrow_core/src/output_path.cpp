@@ -56,7 +56,7 @@ Status check_writable(const fs::path& folder) {
   return {};
 }
 
-bool holds_any(const fs::path& folder, std::initializer_list<std::string_view> names) {
+bool holds_any(const fs::path& folder, const std::vector<std::string_view>& names) {
   return std::ranges::any_of(names, [&](std::string_view name) {
     std::error_code ignored;
     return fs::exists(fs::symlink_status(folder / name, ignored));
@@ -82,7 +82,7 @@ fs::path named(const fs::path& wanted) {
 }  // namespace
 
 Result<OutputFolder> OutputFolder::claim(const fs::path& wanted,
-                                         std::initializer_list<std::string_view> results,
+                                         const std::vector<std::string_view>& results,
                                          Overwrite overwrite) {
   std::error_code failure;
   if (wanted.empty()) return refusal("\"\"", "names no folder");

@@ -142,6 +142,7 @@ Facts provenance(const Summary& s, const RunInfo& info) {
       {"Robot and sensors", s.simulated ? "simulated" : "real"},
       {"Field", s.field},
       {"Plants from", s.source},
+      {"End of the run", s.interrupted ? "interrupted: it ended early" : "finished"},
       {"Measured against", s.against_truth ? "the true plants" : "the robot's own tracks"},
       {"Seed", count(s.seed)},
       {"Graph", info.graph},
@@ -153,6 +154,7 @@ Facts provenance(const Summary& s, const RunInfo& info) {
 
 std::string subtitle(const Summary& s) {
   std::string text = s.simulated ? "Simulated run" : "Run";
+  if (s.interrupted) text += ", interrupted";
   text += ", " + fixed(s.distance_m, 1) + " m at " + fixed(s.speed_mps, 2) + " m/s";
   if (!s.source.empty()) text += " \xC2\xB7 " + s.source;
   return text;

@@ -57,6 +57,7 @@ void count_rows(const std::vector<LedgerRow>& rows, Summary& summary) {
 
 void take_run_info(const RunInfo& info, Summary& summary) {
   summary.simulated = info.simulated;
+  summary.interrupted = info.interrupted;
   summary.axis_travel_m = info.axis_travel_m;
   summary.speed_mps = info.speed_mps;
   summary.distance_m = info.distance_m;
@@ -94,6 +95,7 @@ std::string to_json(const Summary& summary) {
   json["source"] = summary.source;
   json["simulated"] = summary.simulated;
   json["against_truth"] = summary.against_truth;
+  json["interrupted"] = summary.interrupted;
   json["weeds_total"] = summary.weeds_total;
   json["treated_accurate"] = summary.treated_accurate;
   json["treated_partial"] = summary.treated_partial;

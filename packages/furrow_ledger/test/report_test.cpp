@@ -175,5 +175,20 @@ TEST(Report, OfARealRunDoesNotSaySimulated) {
   EXPECT_NE(html.find("the robot&#39;s own tracks"), std::string::npos);
 }
 
+TEST(Report, OfAnInterruptedRunSaysSo) {
+  Example run = example();
+  for (const bool interrupted : {false, true}) {
+    run.record.info.interrupted = interrupted;
+    const auto ledger = account(run.field, run.record);
+    ASSERT_TRUE(ledger.ok());
+    EXPECT_EQ(ledger->summary.interrupted, interrupted);
+    EXPECT_EQ(report_html(*ledger, run.record).find("interrupted") != std::string::npos,
+              interrupted);
+    EXPECT_EQ(map_svg(*ledger, run.record).find("interrupted") != std::string::npos, interrupted);
+    const std::string flag = std::string("\"interrupted\": ") + (interrupted ? "true" : "false");
+    EXPECT_NE(to_json(ledger->summary).find(flag), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace furrow::ledger

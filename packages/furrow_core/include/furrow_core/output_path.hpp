@@ -1,8 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "furrow_core/result.hpp"
 
@@ -25,7 +26,7 @@ class OutputFolder {
   /// not a folder, when nothing can be written there, or when it is to be overwritten while another
   /// process writes it.
   [[nodiscard]] static Result<OutputFolder> claim(const std::filesystem::path& wanted,
-                                                  std::initializer_list<std::string_view> results,
+                                                  const std::vector<std::string_view>& results,
                                                   Overwrite overwrite);
   OutputFolder(OutputFolder&& other) noexcept;
   OutputFolder& operator=(OutputFolder&& other) noexcept;

@@ -32,6 +32,8 @@ struct BiodiversityResult {
 [[nodiscard]] Result<BiodiversityResult> run(const BiodiversityExperiment& experiment,
                                              const Progress& progress = {});
 
+/// For a terminal.
+[[nodiscard]] std::string to_table(const BiodiversityResult& result);
 /// One object: rows with the keys of `furrow eval biodiversity`, seed, parameters, version.
 [[nodiscard]] std::string to_json(const BiodiversityExperiment& experiment,
                                   const BiodiversityResult& result, std::string_view version);

@@ -36,6 +36,8 @@ struct ObservationResult {
 [[nodiscard]] Result<ObservationResult> run(const ObservationExperiment& experiment,
                                             const Progress& progress = {});
 
+/// For a terminal.
+[[nodiscard]] std::string to_table(const ObservationResult& result);
 /// One object: rows with the keys of `furrow eval observation`, sweeps, seed, parameters, version.
 [[nodiscard]] std::string to_json(const ObservationExperiment& experiment,
                                   const ObservationResult& result, std::string_view version);

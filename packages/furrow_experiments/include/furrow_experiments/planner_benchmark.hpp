@@ -47,6 +47,8 @@ struct BenchmarkResult {
 [[nodiscard]] Result<BenchmarkResult> run(const PlannerBenchmark& benchmark,
                                           const Progress& progress = {});
 
+/// For a terminal.
+[[nodiscard]] std::string to_text(const BenchmarkResult& result);
 /// One object: rows with the keys of `furrow bench planner`, window rows, parameters, version.
 [[nodiscard]] std::string to_json(const PlannerBenchmark& benchmark, const BenchmarkResult& result,
                                   std::string_view version);

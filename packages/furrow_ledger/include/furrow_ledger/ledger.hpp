@@ -60,6 +60,7 @@ struct Summary {
   bool simulated = true;
   /// False: measured against the robot's own tracks, for want of the true plants.
   bool against_truth = true;
+  bool interrupted = false;  ///< see RunInfo
   std::int64_t weeds_total = 0;
   std::int64_t treated_accurate = 0;
   std::int64_t treated_partial = 0;

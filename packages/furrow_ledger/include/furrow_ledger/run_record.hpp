@@ -90,6 +90,7 @@ struct ReportTable {
 
 struct RunInfo {
   bool simulated = true;
+  bool interrupted = false;  ///< ended by the user: what was not reached counts as end_of_run
   std::int64_t seed = 0;
   std::string version;                ///< of Furrow
   std::string graph;                  ///< graph file, as named by the user

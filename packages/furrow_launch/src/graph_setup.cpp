@@ -1,0 +1,32 @@
+#include "furrow_launch/graph_setup.hpp"
+
+#include <map>
+
+#include "furrow_launch/installation.hpp"
+
+namespace furrow::launch {
+
+PreparedGraph prepare_graph(const std::string& graph, const std::vector<std::string>& settings) {
+  PreparedGraph prepared;
+  prepared.spec = graph::load_graph(find_shipped(graph, "graph"));
+  // The tool decides how many axis drivers there are, so that its setting must come first.
+  std::vector<std::string> common;
+  std::vector<std::string> others;
+  for (const std::string& setting : settings) {
+    (setting.starts_with("common.") ? common : others).push_back(setting);
+  }
+  graph::apply_settings(prepared.spec, common);
+  const std::string tool = graph::common_text(prepared.spec, "tool_file");
+  if (!tool.empty()) {
+    for (const geometry::AxisModel& axis : geometry::load_tool_model(tool).axes) {
+      prepared.axes.push_back(axis.name);
+    }
+  }
+  std::map<std::string, std::vector<std::string>> lists;
+  if (!prepared.axes.empty()) lists["axes"] = prepared.axes;
+  graph::expand_lists(prepared.spec, lists);
+  graph::apply_settings(prepared.spec, others);
+  return prepared;
+}
+
+}  // namespace furrow::launch

@@ -1,0 +1,80 @@
+#include "furrow_launch/run_report.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "furrow_components/application_record.hpp"
+#include "furrow_components/field_conversion.hpp"
+#include "furrow_components/run_record_conversion.hpp"
+#include "furrow_core/version.hpp"
+#include "furrow_geometry/tool_model.hpp"
+#include "furrow_launch/diagnostics_table.hpp"
+#include "furrow_launch/run_summary.hpp"
+#include "furrow_msgs/furrow_msgs.h"
+
+namespace furrow::launch {
+namespace {
+
+geometry::ToolModel tool_of(const PreparedGraph& prepared) {
+  const std::string file = graph::common_text(prepared.spec, "tool_file");
+  return file.empty() ? geometry::ToolModel() : geometry::load_tool_model(file);
+}
+
+ledger::RunInfo run_info(const RunOutcome& outcome, const PreparedGraph& prepared,
+                         const RunOptions& options, ledger::RunInfo info) {
+  info.simulated = !outcome.record->field().source().empty();
+  info.interrupted = outcome.interrupted;
+  info.seed = options.seed;
+  info.version = version();
+  info.graph = prepared.spec.name;
+  info.wall_s = outcome.wall_s;
+  info.more = {{"clock", options.clock},
+               {"messages dropped", std::to_string(dropped_messages(outcome.components))}};
+  return info;
+}
+
+}  // namespace
+
+std::vector<std::string_view> report_files() {
+  return {"summary.json", "ledger.csv", "report.html", "map.svg", "as_applied.geojson"};
+}
+
+Result<RunReport> write_run_report(const RunOutcome& outcome, const PreparedGraph& prepared,
+                                   const RunOptions& options, const std::filesystem::path& folder) {
+  const furrow_msgs::msg::RunRecord& message = *outcome.record;
+  const geometry::ToolModel tool = tool_of(prepared);
+  const auto applications = components::applications_of(message, tool);
+  // First: what was sprayed is known, whatever the account of the plants comes to.
+  if (Status written = components::write_as_applied(folder, message, applications); !written) {
+    return written.error();
+  }
+  RunReport report;
+  report.dropped_messages = dropped_messages(outcome.components);
+  report.unhealthy = not_well(outcome.components);
+  auto converted = components::from_msg(message, prepared.axes);
+  if (!converted.ok()) {
+    return Error{converted.error().code, "run/record: " + converted.error().message};
+  }
+  ledger::RunRecord record = std::move(converted).value();
+  record.info = run_info(outcome, prepared, options, std::move(record.info));
+  record.tables = components::use_tables(message, applications, tool);
+  std::ranges::move(health_tables(outcome.components, !options.lockstep()),
+                    std::back_inserter(record.tables));
+  if (!outcome.diagnostics.empty()) {
+    record.tables.push_back(diagnostics_table(outcome.diagnostics, outcome.process));
+    std::ranges::move(not_well(outcome.diagnostics, outcome.process),
+                      std::back_inserter(report.unhealthy));
+  }
+  const auto ledger = ledger::account(components::from_msg(message.field()), record);
+  if (!ledger.ok()) {
+    return Error{ledger.error().code, "the run cannot be accounted for: " + ledger.error().message};
+  }
+  if (Status written = ledger::write_run_files(folder, *ledger, record); !written) {
+    return written.error();
+  }
+  report.summary = ledger->summary;
+  return report;
+}
+
+}  // namespace furrow::launch

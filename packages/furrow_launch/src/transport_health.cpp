@@ -1,0 +1,29 @@
+#include "furrow_launch/transport_health.hpp"
+
+namespace furrow::launch {
+
+graph::Health TransportHealth::look() {
+  graph::Health health;
+  std::uint64_t misses = 0;
+  const auto count = [&](const std::string& what, const std::string& topic, std::uint64_t by) {
+    if (by == 0) return;
+    misses += by;
+    health.counters[what + "/" + topic] += static_cast<std::int64_t>(by);
+  };
+  for (const dds::EndpointStatus& endpoint : transport_.status()) {
+    count("deadline_missed", endpoint.topic, endpoint.deadlines_missed);
+    count("writer_lost", endpoint.topic, endpoint.liveliness_losses);
+    count("qos_incompatible", endpoint.topic, endpoint.incompatible);
+    count(endpoint.writer ? "not_sent" : "not_received", endpoint.topic, endpoint.counters.dropped);
+  }
+  if (misses > misses_) {
+    health.level = graph::HealthLevel::kWarn;
+    for (const auto& [name, total] : health.counters) {
+      health.message += (health.message.empty() ? "" : ", ") + name + " " + std::to_string(total);
+    }
+  }
+  misses_ = misses;
+  return health;
+}
+
+}  // namespace furrow::launch

@@ -1,0 +1,107 @@
+#include "furrow_supervisor/supervised_deployment.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include "furrow_core/error.hpp"
+#include "furrow_dds/discovery_server.hpp"
+#include "furrow_graph/graph_check.hpp"
+#include "furrow_launch/installation.hpp"
+#include "furrow_launch/run_graph.hpp"
+#include "furrow_supervisor/deployment_health.hpp"
+
+namespace furrow::supervisor {
+namespace {
+
+std::string pick_host(const graph::DeploymentSpec& deployment, const std::string& wanted) {
+  std::string names;
+  for (const graph::HostSpec& host : deployment.hosts) {
+    if (host.name == wanted) return wanted;
+    names += (names.empty() ? "" : ", ") + host.name;
+  }
+  if (wanted.empty() && deployment.hosts.empty()) return "";
+  throw ConfigError(deployment.where, "hosts",
+                    names.empty()    ? "there are none: leave --host away"
+                    : wanted.empty() ? "name this one with --host: " + names
+                                     : "there is no '" + wanted + "', only: " + names);
+}
+
+bool has_scorer(const graph::GraphSpec& graph, const graph::PlacedProcess& process) {
+  return std::ranges::any_of(graph.components, [&](const auto& component) {
+    return component.class_name == "scorer" &&
+           std::ranges::find(process.components, component.name) != process.components.end();
+  });
+}
+
+/// Where the deployment's processes find each other, when that is this host.
+std::unique_ptr<dds::DiscoveryServer> make_discovery_server(const graph::DeploymentSpec& deployment,
+                                                            const std::string& host,
+                                                            const dds::DdsParameters& dds) {
+  if (dds.discovery != "discovery_server" || deployment.hosts.empty() ||
+      deployment.hosts.front().name != host || dds.peers.empty()) {
+    return nullptr;
+  }
+  return std::make_unique<dds::DiscoveryServer>(dds.domain_id, dds.peers.front());
+}
+
+}  // namespace
+
+SupervisedDeployment::SupervisedDeployment(launch::RunOptions options, const std::string& host)
+    : options_(std::move(options)) {
+  graph::Registry registry = launch::make_registry();
+  const launch::PreparedGraph prepared = launch::prepare_run(options_, registry);
+  (void)graph::check_graph(prepared.spec, registry);
+  deployment_ = launch::prepare_deployment(options_);
+  const auto placed = graph::place_components(prepared.spec, deployment_);
+  host_ = pick_host(deployment_, host);
+  ParameterLoader::load(graph::wire_of(deployment_, host_), dds_);
+  for (const graph::PlacedProcess& process : placed) {
+    if (process.host != host_) continue;
+    processes_.push_back({.name = process.name,
+                          .restart = process.restart && !options_.lockstep(),
+                          .reports = has_scorer(prepared.spec, process)});
+  }
+}
+
+bool SupervisedDeployment::reports() const {
+  return std::ranges::any_of(processes_, &Process::reports);
+}
+
+std::vector<SupervisedProcess> SupervisedDeployment::commands(
+    const RunParameters& parameters) const {
+  launch::RunOptions options = options_;
+  options.out = parameters.out.string();
+  const std::vector<std::string> arguments = launch::run_arguments(options);
+  std::vector<SupervisedProcess> commands;
+  for (const Process& process : processes_) {
+    std::vector<std::string> command = {parameters.program.string()};
+    std::ranges::copy(arguments, std::back_inserter(command));
+    command.insert(command.end(), {"--process=" + process.name, "--supervised"});
+    commands.push_back({.name = process.name,
+                        .command = std::move(command),
+                        .restart = process.restart,
+                        .reports = process.reports});
+  }
+  return commands;
+}
+
+int SupervisedDeployment::run(const RunParameters& parameters) const {
+  const auto server = make_discovery_server(deployment_, host_, dds_);
+  DeploymentHealth health(dds_, parameters.resume);
+  std::size_t width = 0;
+  for (const Process& process : processes_) width = std::max(width, process.name.size());
+  Supervisor supervisor(commands(parameters),
+                        {.on_tick = [&health] { return health.tick(); },
+                         .show =
+                             [&](const std::string& name, const std::string& text) {
+                               std::string line(width, ' ');
+                               line.replace(0, name.size(), name);
+                               parameters.show(line + " | " + text);
+                             },
+                         .stop_reporter_first = options_.lockstep()});
+  return supervisor.run();
+}
+
+}  // namespace furrow::supervisor
