@@ -32,4 +32,4 @@ done
 arguments=("$@")
 has_option --length "$@" || arguments+=(--length 10)
 has_option --out "$@" || arguments+=(--out "$furrow_root/out/cia402_demo")
-furrow run --graph weeding_cia402 --clock real --no-wire "${arguments[@]}"
+furrow run --graph weeding_cia402 --clock real --no-dds "${arguments[@]}"

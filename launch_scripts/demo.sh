@@ -14,4 +14,4 @@ arguments=("$@")
 has_option --clock "$@" || arguments+=(--clock lockstep)
 has_option --length "$@" || arguments+=(--length 20)
 has_option --out "$@" || arguments+=(--out "$furrow_root/out/demo")
-furrow run --no-wire "${arguments[@]}"
+furrow run --no-dds "${arguments[@]}"

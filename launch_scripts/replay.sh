@@ -17,4 +17,4 @@ fi
 arguments=("$@")
 has_option --clock "$@" || arguments+=(--clock lockstep)
 has_option --out "$@" || arguments+=(--out "$furrow_root/out/replay")
-furrow run --no-wire --recording "${files[@]}" "${arguments[@]}"
+furrow run --no-dds --recording "${files[@]}" "${arguments[@]}"

@@ -74,7 +74,7 @@ for host in "${hosts[@]}"; do
   ip netns exec "$(namespace "$host")" unshare --uts --mount bash -c '
     hostname "$1" && mount -t tmpfs tmpfs /dev/shm && shift && exec "$@"' _ "$host" \
     "$program" up --deploy three_hosts --host "$host" \
-    --wire "discovery=$discovery" "$@" &
+    --dds "discovery=$discovery" "$@" &
   pids+=($!)
 done
 

@@ -16,7 +16,7 @@ class Up:
 
     def __init__(self, folder, out, *arguments):
         self.process = subprocess.Popen(
-            [furrow_program(), "up", *GRAPH, "--wire", f"domain_id={domain()}", "--out", str(out),
+            [furrow_program(), "up", *GRAPH, "--dds", f"domain_id={domain()}", "--out", str(out),
              *map(str, arguments)],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             text=True)

@@ -60,7 +60,7 @@ class FurrowCase(unittest.TestCase):
     def run_graph(self, *arguments, out=None, **options):
         """A run in simulated time that must succeed; its summary."""
         out = out or self.out
-        done = self.furrow("run", "--no-wire", "--clock", "lockstep", "--out", out, *arguments,
+        done = self.furrow("run", "--no-dds", "--clock", "lockstep", "--out", out, *arguments,
                            **options)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads((out / "summary.json").read_text())
@@ -72,7 +72,7 @@ class FurrowCase(unittest.TestCase):
     def bag_info(self, file):
         """What `bag info` says of a file, by topic."""
         table = self.folder / "info.json"
-        done = self.furrow("bag", "info", file, "--json", table)
+        done = self.furrow("bag", "info", file, "--json", table, "--force")
         self.assertIn(done.returncode, (0, 1), done.stderr)
         row = json.loads(table.read_text())["rows"][0]
         row["counts"] = {topic["topic"]: topic["messages"] for topic in row["topics"]}

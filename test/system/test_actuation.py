@@ -76,7 +76,7 @@ class SafetyTest(FurrowCase):
 class DriveTest(FurrowCase):
 
     def test_drives_that_are_not_there_are_told(self):
-        done = self.furrow("run", "--graph", "weeding_cia402", "--no-wire", "--clock", "lockstep",
+        done = self.furrow("run", "--graph", "weeding_cia402", "--no-dds", "--clock", "lockstep",
                            "--length", 2, "--out", self.out,
                            *(argument for axis in range(1, 5) for argument in
                              ("--set", f"driver_axis_{axis}.drive_port={9 + axis}")))

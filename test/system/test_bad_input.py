@@ -21,7 +21,7 @@ class BadInputTest(FurrowCase):
         return file
 
     def assert_run_refused(self, arguments, *parts, graph=GRAPH, wire=False):
-        self.assert_refused(["run", *([] if wire else ["--no-wire"]), "--clock", "lockstep",
+        self.assert_refused(["run", *([] if wire else ["--no-dds"]), "--clock", "lockstep",
                              "--graph", self.share / graph, "--out", self.out, *arguments], *parts)
 
     def assert_edit_refused(self, path, old, new, *parts, arguments=()):
@@ -56,7 +56,7 @@ class BadInputTest(FurrowCase):
                                  "tracker: input 'perception/instances' is not connected")
 
     def test_name_of_no_graph(self):
-        self.assert_refused(["run", "--no-wire", "--graph", "nope", "--out", self.out],
+        self.assert_refused(["run", "--no-dds", "--graph", "nope", "--out", self.out],
                             "'nope'", "weeding", "weeding_true_detections")
 
     def test_graph_check_finds_the_same(self):
@@ -214,14 +214,14 @@ class BadInputTest(FurrowCase):
                                 (["--length", "nan"], "length"), (["--length", "far"], "--length"),
                                 (["--deploy", "nope"], "composed")):
             with self.subTest(arguments):
-                self.assert_refused(["run", "--no-wire", "--graph", "weeding_true_detections",
+                self.assert_refused(["run", "--no-dds", "--graph", "weeding_true_detections",
                                      "--out", self.out, *arguments], part)
         self.assert_refused([], "subcommand")
         self.assert_refused(["dig"], "subcommand")
 
     def test_report_folder_that_is_a_file(self):
         file = self.write("file", "kept")
-        self.assert_refused(["run", "--no-wire", "--graph", "weeding_true_detections",
+        self.assert_refused(["run", "--no-dds", "--graph", "weeding_true_detections",
                              "--out", file], "file")
         self.assertEqual(file.read_text(), "kept")
 

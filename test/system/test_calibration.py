@@ -89,7 +89,7 @@ class NozzleFileTest(FurrowCase):
     def test_an_axis_without_an_entry_is_refused(self):
         nozzles = self.folder / "nozzles.yaml"
         nozzles.write_text("nozzles:\n  - axis: axis_1\n")
-        self.assert_refused(("run", "--no-wire", "--clock", "lockstep", "--out", self.out, "--set",
+        self.assert_refused(("run", "--no-dds", "--clock", "lockstep", "--out", self.out, "--set",
                              f"driver.nozzle_file={nozzles}"), "nozzles.yaml", "axis_2")
 
 

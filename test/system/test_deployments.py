@@ -1,5 +1,6 @@
 """Deployments over DDS on loopback: the same outcome wherever the components live; what stops them."""
 
+import json
 import os
 import pathlib
 import signal
@@ -9,6 +10,9 @@ import unittest
 
 from deployment_case import GRAPH, STOP_WITHIN_S, DeploymentCase
 from furrow_case import domain, furrow_program
+
+
+REPORT_FILES = ["as_applied.geojson", "ledger.csv", "map.svg", "report.html", "summary.json"]
 
 
 class SameOutcomeTest(DeploymentCase):
@@ -53,23 +57,53 @@ class CtrlCTest(DeploymentCase):
         self.assertEqual(up.finish(), 1)
         self.assertLess(time.monotonic() - started, STOP_WITHIN_S)
         self.assertNotIn("killed", up.text())
+        self.assert_interrupted_report(weeds_at_least=50)
         for pid in pids:
             self.assertFalse(pathlib.Path(f"/proc/{pid}").exists())
 
-    def test_ctrl_c_ends_a_run_of_one_process_within_two_seconds(self):
+    def assert_interrupted_report(self, weeds_at_least):
+        """What was done so far is written, and marked."""
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()), REPORT_FILES)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertTrue(summary["interrupted"])
+        self.assertGreater(summary["distance_m"], 0.0)
+        self.assertGreaterEqual(summary["weeds_total"], weeds_at_least)
+        self.assertGreater(summary["missed_by_reason"]["end_of_run"], 0)
+        self.assertIn("interrupted", (self.out / "report.html").read_text())
+        self.assertEqual(len(self.ledger()), summary["weeds_total"] + summary["crops_total"])
+
+    def start_run(self, *arguments):
         run = subprocess.Popen(
-            [furrow_program(), "run", *GRAPH, "--length", "20", "--out", self.out,
-             "--wire", f"domain_id={domain()}"],
+            [furrow_program(), "run", *GRAPH, "--length", "20", "--out", self.out, *arguments],
             cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, text=True)
-        self.addCleanup(run.kill)
+
+        def end():
+            if run.poll() is None:
+                run.kill()
+            run.communicate()
+        self.addCleanup(end)
         self.assertIn("weeding", run.stderr.readline())
+        return run
+
+    def test_ctrl_c_ends_a_run_of_one_process_within_two_seconds(self):
+        run = self.start_run("--domain", str(domain()))
+        run.stderr.readline()  # a tenth of the way
         started = time.monotonic()
         run.send_signal(signal.SIGINT)
         text = run.communicate(timeout=20)[1]
         self.assertLess(time.monotonic() - started, STOP_WITHIN_S)
         self.assertEqual(run.returncode, 1, text)
         self.assertIn("interrupted", text)
+        self.assert_interrupted_report(weeds_at_least=50)
+
+    def test_ctrl_c_in_simulated_time_writes_the_report(self):
+        run = self.start_run("--no-dds", "--clock", "lockstep")
+        run.stderr.readline()  # a tenth of the way
+        run.send_signal(signal.SIGINT)
+        text = run.communicate(timeout=60)[1]
+        self.assertEqual(run.returncode, 1, text)
+        self.assert_interrupted_report(weeds_at_least=50)
 
 
 class BadDeploymentTest(DeploymentCase):
@@ -78,14 +112,14 @@ class BadDeploymentTest(DeploymentCase):
                 (["--deploy", "three_hosts"], "name this one with --host: vision, planning"),
                 (["--deploy", "three_hosts", "--host", "moon"], "there is no 'moon'"),
                 (["--host", "vision"], "there are none: leave --host away"),
-                (["--wire", "domain_id=900"], "domain_id: 900 is out of range"),
-                (["--wire", "domian_id=9"], "domian_id"),
+                (["--dds", "domain_id=900"], "domain_id: 900 is out of range"),
+                (["--dds", "domian_id=9"], "domian_id"),
                 (["--address", "vision=1.2.3.4"], "is not HOST=ADDRESS"),
                 (["--seed", "-1"], "--seed")):
             self.assert_refused(["up", *arguments], part)
-        self.assert_refused(["run", "--no-wire", "--deploy", "distributed", "--process", "robot"],
-                            "cannot do with --no-wire")
-        self.assert_refused(["run", "--no-wire", "--wire", "domain_id=900"], "out of range")
+        self.assert_refused(["run", "--no-dds", "--deploy", "distributed", "--process", "robot"],
+                            "--no-dds needs a single-process deployment")
+        self.assert_refused(["run", "--no-dds", "--dds", "domain_id=900"], "out of range")
 
 
 if __name__ == "__main__":

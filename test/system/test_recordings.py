@@ -170,7 +170,7 @@ class FromRecordingTest(RecordingCase):
                            "run/*", "truth/field", "truth/odometry", "truth/spray")
         self.assertEqual(done.returncode, 0, done.stderr)
         # What is not known is not in the ledger; the run itself goes to its end.
-        done = self.furrow("run", "--no-wire", "--clock", "lockstep", "--graph",
+        done = self.furrow("run", "--no-dds", "--clock", "lockstep", "--graph",
                            "weeding_true_detections", "--recording", file, "--out", self.out)
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -179,14 +179,14 @@ class FromRecordingTest(RecordingCase):
         for file, *options in ((parts[0], "--to", 4), (parts[1], "--from", 4.3, "--no-latched")):
             done = self.furrow("bag", "cut", self.recorded, file, *options)
             self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.furrow("run", "--no-wire", "--clock", "lockstep", *SHORT_RUN[:4], "--recording",
+        done = self.furrow("run", "--no-dds", "--clock", "lockstep", *SHORT_RUN[:4], "--recording",
                            *parts, "--out", self.out)
         self.assertEqual(done.returncode, 0, done.stderr)
         told = re.findall(r"^  (driver_axis_\d): error: odometry_stale", done.stdout, re.MULTILINE)
         self.assertEqual(told, [f"driver_axis_{i}" for i in range(1, 5)], done.stdout)
 
     def test_bad_input_is_refused(self):
-        graph = ["run", "--no-wire", "--clock", "lockstep", *SHORT_RUN[:4], "--out", self.out]
+        graph = ["run", "--no-dds", "--clock", "lockstep", *SHORT_RUN[:4], "--out", self.out]
         garbage = self.folder / "garbage.mcap"
         garbage.write_bytes(b"\x89MCAP0\r\n" + os.urandom(1000))
         for more, part in (
@@ -201,7 +201,7 @@ class FromRecordingTest(RecordingCase):
             with self.subTest(more):
                 self.assert_refused([*graph, *more], part)
         # The default detector needs images, which this recording has not.
-        self.assert_refused(["run", "--no-wire", "--clock", "lockstep", "--recording",
+        self.assert_refused(["run", "--no-dds", "--clock", "lockstep", "--recording",
                              self.recorded, "--out", self.out], "camera/", "perception needs")
 
 
@@ -347,7 +347,7 @@ class WireTest(RecordingCase):
                 ([*play, "--domain", "900"], "--domain"),
                 ([*record, "--split-mb", "-1"], "--split-mb"),
                 ([*record, "--compression", "zip"], "zip"),
-                ([*record, "--wire", "lease=1"], "lease"),
+                ([*record, "--dds", "lease=1"], "lease"),
                 ([*record, "--min-free-mb", "1000000"], "MB left"),
                 (["record", "--out", self.recorded.with_name("run")], "exists"),
                 (["record", "--out", "/proc/no/such"], "/proc/no")):

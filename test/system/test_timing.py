@@ -43,7 +43,8 @@ class ControlLoopTest(FurrowCase):
         used meanwhile, and how the drivers' threads run."""
         busy_s, own_s = self.cpu_seconds()
         started = time.monotonic()
-        done = self.furrow("run", "--no-wire", "--clock", "real", "--length", 4, "--out", self.out)
+        done = self.furrow("run", "--no-dds", "--clock", "real", "--length", 4, "--out", self.out,
+                           "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         busy_until_s, own_until_s = self.cpu_seconds()
         others = ((busy_until_s - busy_s) - (own_until_s - own_s)) / (time.monotonic() - started)
@@ -82,7 +83,7 @@ class DriveTest(FurrowCase):
         for options in ((), ("--profile-only",)):
             with self.subTest(options=options):
                 done = subprocess.run([script, *options, "--length", "1", "--seed", "7", "--out",
-                                       self.out], stdin=subprocess.DEVNULL, capture_output=True,
+                                       self.out, "--force"], stdin=subprocess.DEVNULL, capture_output=True,
                                       text=True, timeout=120, check=False)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 summary = json.loads((self.out / "summary.json").read_text())

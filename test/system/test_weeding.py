@@ -1,8 +1,10 @@
 """Whole runs over a short row, in simulated time: the same twice, accounted for, accurate."""
 
+import json
+import subprocess
 import unittest
 
-from furrow_case import FurrowCase
+from furrow_case import FurrowCase, furrow_program
 
 LENGTH_M = 2
 WALL_CLOCK_KEYS = {"realtime_factor", "wall_s"}
@@ -103,13 +105,35 @@ class TrueDetectionsTest(FurrowCase):
 class DistractionsTest(FurrowCase):
     """What is around a run must not matter."""
 
-    def test_a_report_replaces_the_one_before(self):
-        common = ["--graph", "weeding_true_detections", "--length", 3]
-        self.run_graph(*common, "--seed", 1)
-        before, files = self.ledger(), sorted(self.out.iterdir())
-        self.run_graph(*common, "--seed", 2)
-        self.assertNotEqual(before, self.ledger())
-        self.assertEqual(sorted(self.out.iterdir()), files)
+    def test_a_report_does_not_replace_the_one_before(self):
+        common = ["run", "--no-dds", "--clock", "lockstep", "--graph", "weeding_true_detections",
+                  "--length", 3, "--out", self.out]
+        self.furrow(*common, "--seed", 1)
+        first = (self.out / "ledger.csv").read_bytes()
+        done = self.furrow(*common, "--seed", 2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("out-2", done.stderr)
+        self.assertIn("out-2", done.stdout)
+        self.assertEqual((self.out / "ledger.csv").read_bytes(), first)
+        second = (self.folder / "out-2" / "ledger.csv").read_bytes()
+        self.assertNotEqual(second, first)
+        done = self.furrow(*common, "--seed", 2, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.out / "ledger.csv").read_bytes(), second)
+        self.assertFalse((self.folder / "out-3").exists())
+
+    def test_two_runs_at_a_time_do_not_share_a_folder(self):
+        runs = [subprocess.Popen(
+            [furrow_program(), "run", "--no-dds", "--clock", "lockstep", "--graph",
+             "weeding_true_detections", "--length", "3", "--seed", str(seed), "--out", self.out],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                for seed in (1, 2)]
+        for run in runs:
+            text = run.communicate(timeout=100)[1]
+            self.assertEqual(run.returncode, 0, text)
+        seeds = {json.loads((self.folder / name / "summary.json").read_text())["seed"]
+                 for name in ("out", "out-2")}
+        self.assertEqual(seeds, {1, 2})
 
     def test_generated_field_can_be_kept_and_run_again(self):
         for name in ("field.csv", "field.geojson"):

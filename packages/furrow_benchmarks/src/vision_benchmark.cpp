@@ -29,10 +29,10 @@ double resident_mb() {
 }
 
 std::vector<LoadedImage> rendered_images(cv::Size size_px, std::uint64_t seed) {
-  constexpr std::int64_t kImages = 3;
+  constexpr std::int64_t kPictures = 3;
   const ScratchFolder scratch;
   evaluation::EvaluationSet set = evaluation::render_evaluation_set(
-      {.images = kImages, .size_px = size_px, .seed = seed}, scratch.path(), [](double) {});
+      {.images = kPictures, .size_px = size_px, .seed = seed}, scratch.path(), [](double) {});
   std::vector<LoadedImage> images;
   for (auto& image : set.dataset.images) {
     auto loaded = evaluation::load_image(image, set.resolution_mm_per_px);
