@@ -21,7 +21,7 @@ void add_facts(std::vector<std::pair<std::string, std::string>>& facts, Paramete
   parameters.visit(lister);
   for (const DeclaredParameter& declared : lister.declared()) {
     const std::string unit = declared.info.unit.empty() ? "" : " " + declared.info.unit;
-    facts.emplace_back(declared.info.name, to_text(declared.default_value) + unit);
+    facts.emplace_back(declared.info.name, furrow::to_text(declared.default_value) + unit);
   }
 }
 
