@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "control_input.hpp"
+#include "furrow_core/text.hpp"
 #include "furrow_launch/signals.hpp"
 #include "furrow_recording/dds_player.hpp"
 #include "transport_options.hpp"

@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "control_input.hpp"
+#include "furrow_core/text.hpp"
 #include "furrow_launch/signals.hpp"
 #include "furrow_recording/dds_recorder.hpp"
 #include "parameter_options.hpp"
