@@ -8,7 +8,7 @@ void add_run_options(Command command, launch::RunOptions& options) {
   command.option("--set", options.settings,
                  "COMPONENT.KEY=VALUE overrides a parameter; common.KEY=VALUE for all components");
   command.option("--dds,--wire", options.dds_settings,
-                 "KEY=VALUE overrides a DDS parameter of the deployment (docs/explanation/dds.md)");
+                 "KEY=VALUE overrides a DDS parameter of the deployment");
   command
       .option("--domain", options.domain_id,
               "DDS domain; default: that of the deployment, else ROS_DOMAIN_ID, else 0")
