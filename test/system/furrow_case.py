@@ -26,7 +26,7 @@ def furrow_program():
 @functools.cache
 def domain():
     """A DDS domain that no other test on this host uses as long as this process lives. Up to 100:
-    the ports of those above are given to anybody."""
+    the system gives the ports of those above to any program."""
     first = os.getpid()
     for number in range(91):
         candidate = 10 + (first + number) % 91

@@ -1,4 +1,4 @@
-"""Valves that are slower than anybody told: seen on the ground, and calibrated away."""
+"""Valves slower than their calibration: seen on the ground, and calibrated away."""
 
 import json
 import unittest

@@ -183,9 +183,8 @@ void measure_in_process(const GraphBenchmark& benchmark, const ScratchFolder& sc
   add_rows("in_process_observed", observed, result);
 }
 
-/// Fast DDS from one participant to another of the same process, which it delivers without a
-/// transport: from image to image, as Furrow's readers get one, or of bytes that are taken as they
-/// are.
+/// Fast DDS from one participant to another of the same process, between which it uses no
+/// transport. The reader makes an image of the bytes, as Furrow's readers get one, or does not.
 void measure_fastdds_in_process(const GraphBenchmark& benchmark, bool as_image,
                                 GraphBenchmarkResult& result) {
   const msgs::Topic& topic = msgs::topics::CameraImage::topic();

@@ -42,7 +42,7 @@ std::shared_ptr<Image> make_image(std::size_t bytes) {
   return image;
 }
 
-/// Publishes images from a pool, none of which is changed while somebody holds it.
+/// Publishes images from a pool, none of which changes while a reader holds it.
 class Source final : public graph::Component {
  public:
   Source(graph::Context& context, std::shared_ptr<Shared> shared)

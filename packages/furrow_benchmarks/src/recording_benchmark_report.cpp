@@ -14,14 +14,14 @@ std::string to_text(const RecordingBenchmarkResult& result) {
   }
   const RecordedGraphTiming& graph = result.graph;
   const PlaybackTiming& playback = result.playback;
-  return text_table(table) + "\ndelivery of an image in a graph, us: alone p50 " +
+  return text_table(table) + "\nDelivery of an image in a graph, us: alone p50 " +
          fixed(graph.alone_p50_us, 1) + ", p99 " + fixed(graph.alone_p99_us, 1) +
          "; recorded p50 " + fixed(graph.recorded_p50_us, 1) + ", p99 " +
          fixed(graph.recorded_p99_us, 1) + "; " + std::to_string(graph.lost) + " of " +
-         std::to_string(graph.messages) + " lost\nplayback at rate 1, timing error in ms: p50 " +
+         std::to_string(graph.messages) + " lost.\nPlayback at rate 1, timing error in ms: p50 " +
          fixed(playback.p50_ms, 3) + ", p99 " + fixed(playback.p99_ms, 3) + " as sent, " +
          fixed(playback.published_p99_ms, 3) + " as published; " + std::to_string(playback.lost) +
-         " of " + std::to_string(playback.messages) + " lost\n";
+         " of " + std::to_string(playback.messages) + " lost.\n";
 }
 
 std::string to_json(const RecordingBenchmark& benchmark, const RecordingBenchmarkResult& result,

@@ -6,8 +6,8 @@
 
 namespace furrow::cli {
 
-/// Calls back on a thread of its own with each line that comes on standard input, while it lives.
-/// An input that has ended, or is not there, is passed over.
+/// Calls back from its own thread with each line of standard input, until it is destroyed. An input
+/// that has ended, or is not there, is ignored.
 class ControlInput {
  public:
   explicit ControlInput(std::function<void(const std::string&)> on_line);

@@ -35,8 +35,8 @@ struct PublishedTopic {
                                                            const std::string& name, double seconds,
                                                            const std::function<bool()>& stopped);
 
-/// Messages of one topic, moved from the transport's thread to the caller's. Of more than a
-/// thousand that wait, the oldest are dropped.
+/// Messages of one topic, moved from the receive thread to the caller's. Of more than a thousand
+/// that wait, the oldest are dropped.
 class TopicSubscription {
  public:
   TopicSubscription(dds::DdsTransport& transport, const std::string& name,

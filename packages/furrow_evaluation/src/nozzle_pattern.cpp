@@ -138,7 +138,7 @@ graph::GraphSpec pattern_graph(const launch::PreparedGraph& prepared,
   std::erase_if(spec.components, [](const graph::ComponentSpec& component) {
     return component.class_name != "robot_simulator" && component.class_name != "axis_driver";
   });
-  // The rest of the common parameters is for those who are left away.
+  // The other common parameters belong to the components that are left out.
   std::erase_if(spec.common,
                 [](const GivenParameter& parameter) { return parameter.name != "tool_file"; });
   bool has_robot = false;

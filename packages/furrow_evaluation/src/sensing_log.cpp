@@ -19,7 +19,7 @@ namespace {
 namespace topics = msgs::topics;
 constexpr char kName[] = "furrow_sensing_log";
 
-/// One plant in the truth of one image.
+/// One plant in the ground truth of one image.
 struct ShownPlant {
   Time stamp;
   Eigen::Vector3d p_C_m = Eigen::Vector3d::Zero();
@@ -87,8 +87,8 @@ void add_collector(const std::shared_ptr<Collector>& collector, graph::GraphSpec
       {.name = kName, .group = kName, .class_name = kName, .where = graph.where});
 }
 
-/// The truth of an image tells where a plant stands, not which one it is: no two stand in one
-/// place.
+/// The ground truth of an image says where a plant stands, not which plant it is. No two plants
+/// stand in one place.
 void count_visible(const std::vector<ShownPlant>& shown, const Eigen::Isometry3d& X_BC,
                    SensingLog& log) {
   constexpr double kSamePlace_m = 1e-4;

@@ -79,7 +79,7 @@ class Replay {
   }
   void take(const furrow_msgs::msg::PlantInstances& message) { waiting_.push_back(&message); }
 
-  // The truth is not corrected.
+  // The ground truth needs no correction.
   void follow(Time stamp) {
     if (options_.pose == PoseSource::kTruth) return;
     if (const auto pose = filter_.predict(stamp); pose.ok()) {

@@ -146,9 +146,9 @@ std::string to_html(const TrackingExperiment& experiment, const std::vector<Trac
                          &TrackingRow::idf1)});
   page.section(
       "All figures",
-      "MOTA, IDF1 and HOTA are taken frame by frame in the robot's own frame, with 25 mm "
-      "for the same plant; plants that the detector does not see, or no image shows, count as "
-      "missed. Switches are of identities, of the plants of all rows. Stems are compared in the "
+      "MOTA, IDF1 and HOTA are taken frame by frame in the robot's own frame. A track within 25 mm "
+      "stands for the plant. Plants that the detector does not see, or no image shows, count as "
+      "missed. Switches are of identities, over the plants of all rows. Stems are compared in the "
       "field frame, drift of the pose included, each plant's with that of its own track.");
   page.table(table_of(rows));
   return page.finish();

@@ -207,11 +207,11 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
   double area_m2 = 0.0;
   for (const TrialStretch& stretch : result.stretches) area_m2 += stretch.area_m2;
   page.section("What was done",
-               "Rendered images through detector, tracker, fused localization, planner, axes and "
-               "nozzles, with slipping wheels, an RTK receiver with outages, wind on the spray and "
-               "on the leaves, and jitter of the valves. The fields are generated at the densities "
-               "of the paper's data sets; they are not its fields, and everything of ours here is "
-               "simulated. Each region has a seed of its own.");
+               "Rendered images go through detector, tracker, fused localization, planner, axes "
+               "and nozzles. The wheels slip, the RTK receiver has outages, wind moves spray and "
+               "leaves, and the valves jitter. The fields are generated at the densities of the "
+               "paper's data sets; they are not its fields. Everything of ours here is simulated. "
+               "Each region has its own seed.");
   page.facts({{"area", fixed(area_m2, 1) + " m2"},
               {"graph", experiment.graph},
               {"seed", std::to_string(experiment.seed)},
@@ -219,8 +219,8 @@ std::string to_html(const TrialExperiment& experiment, const TrialResult& result
   page.section("Speed",
                experiment.governed
                    ? "The planner asks for the speed at which its axes keep up with the weeds "
-                     "ahead, up to the robot's own, and the robot follows: what is not missed is "
-                     "paid for with time. Speeds and area an hour are those within the fields."
+                     "ahead, up to the robot's own, and the robot follows. Fewer missed weeds cost "
+                     "time. Speeds and area an hour are those within the fields."
                    : "The robot keeps its speed. Speeds and area an hour are those within the "
                      "fields.");
   page.section("The paper's third table beside ours",

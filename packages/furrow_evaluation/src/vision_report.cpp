@@ -101,8 +101,8 @@ std::string to_html(const VisionReport& report) {
   ledger::HtmlPage page("Seeing plants",
                         "Furrow " + std::string(version()) + ", detectors on data sets");
   page.section("Figures",
-               "IoU of pixels, summed over the images; average precision by COCO's procedure over "
-               "crop and weed; panoptic quality; errors of stems and areas of plants that were "
+               "IoU of pixels, summed over the images. Average precision by COCO's procedure over "
+               "crop and weed. Panoptic quality. Errors of stems and areas of plants that were "
                "found with a mask IoU of at least 0.5. A dash: the data set does not say.");
   ledger::ReportTable table{.title = "", .header = kHeader, .rows = {}};
   for (const VisionRow& row : report.rows) table.rows.push_back(cells_of(row));
@@ -136,8 +136,8 @@ std::string to_html(const VisionReport& report) {
 
   page.section("Pictures",
                "For each detector and data set the images that came out best and worst (mean IoU "
-               "of soil, weed and crop). Left the truth, right what was found: crops green, weeds "
-               "orange, a cross at the stem.");
+               "of soil, weed and crop). Annotations on the left, detections on the right: crops "
+               "green, weeds orange, a cross at the stem.");
   for (const VisionPicture& picture : report.pictures) {
     page.paragraph(picture.dataset + ", " + picture.detector + ": " + picture.file + ", mean IoU " +
                    fixed(picture.miou, 3));

@@ -234,11 +234,11 @@ std::string to_html(const ObservationExperiment& experiment, const ObservationRe
   const bool paper = of_paper(rows);
   page.section("Loss against density",
                std::string("Bars are 95 % confidence intervals over seeds. ") +
-                   (paper ? "Dashed, hollow: the paper's figures (nOTSP, static division, on "
-                            "fields that were recorded and are not at hand; ours are generated at "
-                            "their densities), and the best plan with one spray for each weed when "
-                            "the whole row is known beforehand. Footprints that take several "
-                            "weeds can do better than that."
+                   (paper ? "Dashed, hollow: the paper's figures (nOTSP, static division), and "
+                            "the best plan with one spray for each weed when the whole row is "
+                            "known beforehand. The paper's fields were recorded and are not at "
+                            "hand; ours are generated at their densities. Footprints that take "
+                            "several weeds can do better than the best plan."
                           : "Dashed, hollow: the best plan with one spray for each weed when the "
                             "whole row is known beforehand."));
   std::vector<std::string> charts;

@@ -15,7 +15,7 @@ bool is_of_others(const std::string& name, const diagnostic_msgs::msg::Diagnosti
 ledger::ReportTable diagnostics_table(
     const std::map<std::string, diagnostic_msgs::msg::DiagnosticStatus>& diagnostics,
     const std::string& own_process) {
-  ledger::ReportTable table{"Other processes and the wire",
+  ledger::ReportTable table{"Other processes and the transport",
                             {"process: component", "health", "received", "dropped", "counters"},
                             {}};
   for (const auto& [name, status] : diagnostics) {

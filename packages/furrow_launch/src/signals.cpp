@@ -21,7 +21,7 @@ void note(int signal) {
   const int kept = errno;
   const auto byte = static_cast<unsigned char>(signal);
   if (::write(write_end.load(), &byte, 1) < 0) {
-    // A full pipe holds more signals than anybody reads.
+    // A full pipe holds signals enough.
   }
   errno = kept;
 }

@@ -1,5 +1,5 @@
-// How soon a valve is shut when the process of the planner is killed: the planner runs in a process
-// of its own, DDS between the two, and is sent SIGKILL while the valve is open.
+// How soon a valve is shut when the process of the planner is killed. The planner runs in its own
+// process, reached over DDS, and is sent SIGKILL while the valve is open.
 
 #include <gtest/gtest.h>
 #include <signal.h>

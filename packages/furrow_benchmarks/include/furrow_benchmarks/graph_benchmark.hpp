@@ -32,12 +32,15 @@ struct GraphBenchmarkResult {
   bool payload_copied = false;  ///< between components of one process
 };
 
-/// Hand-off inside a process, the same while a recorder of another process reads along, Fast DDS's
-/// own delivery inside a process, both ways between two processes in turns, and the way of a frame
-/// from the camera's stamp to the plan at the tool. Throws std::runtime_error.
+/// Measures these paths, each from publication to the reader's callback:
+/// - delivery inside a process, alone and while a recorder of another process reads along;
+/// - Fast DDS's own delivery inside a process;
+/// - between two processes, Furrow and plain Fast DDS in turns;
+/// - of a frame, from the camera's stamp to the plan at the tool.
+/// Throws std::runtime_error.
 [[nodiscard]] GraphBenchmarkResult run_graph_benchmark(const GraphBenchmark& benchmark);
 
-/// The other process: reads until it gets SIGTERM, then writes what it measured into `file`.
+/// The other process: reads until it gets SIGTERM, then writes its measurements into `file`.
 void run_graph_benchmark_peer(const GraphBenchmark& benchmark, const std::string& file);
 
 }  // namespace furrow::benchmarks

@@ -16,7 +16,7 @@ struct PatternOptions {
 };
 
 /// Drives the graph's simulated robot over a test pattern, once at each speed and in simulated
-/// time: each axis sprays single points whose places it is told, with these calibrations, at the
+/// time. Each axis sprays single points whose places it is told, with these calibrations, at the
 /// true pose. Of the graph only the robot simulator and the axis drivers are used. Throws
 /// ConfigError when the graph has no simulated robot or no axis drivers.
 [[nodiscard]] components::LandingOffsets run_pattern(

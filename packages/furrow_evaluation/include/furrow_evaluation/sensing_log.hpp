@@ -13,8 +13,8 @@
 
 namespace furrow::evaluation {
 
-/// What the sensors and the detector told in one run over a field, in the order of arrival, and
-/// the truth. Localization and tracking are tried on it again and again without another picture.
+/// Messages of the sensors and of the detector in one run over a field, in the order of arrival,
+/// with the ground truth. Localization and tracking are tried on it without rendering again.
 struct SensingLog {
   using Wheels = std::shared_ptr<const nav_msgs::msg::Odometry>;
   using Imu = std::shared_ptr<const sensor_msgs::msg::Imu>;

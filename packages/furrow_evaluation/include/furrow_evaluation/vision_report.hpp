@@ -15,7 +15,7 @@ struct VisionRow {
   double ms_per_frame = 0.0;
 };
 
-/// One picture with what a detector found, beside the truth.
+/// One picture of the detections, beside the annotations.
 struct VisionPicture {
   std::string dataset;
   std::string detector;

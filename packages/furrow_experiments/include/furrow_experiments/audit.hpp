@@ -8,10 +8,12 @@
 
 namespace furrow::experiments {
 
-/// Checks what was carried out over a whole drive, from the definitions alone: each weed treated
-/// once and within the footprint, sprays within their axis's span, enough time between two sprays
-/// of an axis (only the move itself where nozzles may fire in passing), no spray within the
-/// protection zone of a crop. The Error names the first that fails.
+/// Checks the sprays of a whole drive, from the definitions alone:
+/// - each weed is treated once and within the footprint;
+/// - each spray is within its axis's span;
+/// - an axis has enough time between two sprays (where nozzles fire in passing: for the move);
+/// - no spray is within the protection zone of a crop.
+/// The Error names the first check that fails.
 [[nodiscard]] Status check_sprays(const FieldTargets& field, std::span<const Spray> sprays,
                                   const planning::PlannerParameters& planner,
                                   const SetupParameters& setup);

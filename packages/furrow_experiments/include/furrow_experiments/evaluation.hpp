@@ -33,8 +33,8 @@ inline constexpr double kLowWeight = 0.1;  ///< the paper's
 inline constexpr double kHighWeight = 1.0;
 
 /// What came of one drive. The clairvoyant optimum is the best joint plan of one spray for each
-/// weed, made at once for the whole row, all plants known; footprints that take several weeds can
-/// do better.
+/// weed, made at once for the whole row with all plants known. Footprints that take several weeds
+/// can do better.
 struct DriveFigures {
   std::size_t weeds = 0;
   std::size_t treated = 0;

@@ -5,9 +5,9 @@
 
 namespace furrow::experiments {
 
-/// One field of the tables of Ahmadi, Halstead, Smitt, McCool: "BonnBot-I Plus" (2024), arXiv
-/// 2405.09118, tables tab:realPlanning (nOTSP with static division; loss in %, travel of an axis in
-/// m, mean and spread) and tab:weedCatsHits (treated share in %, at 1.0 m/s).
+/// One field of two tables of Ahmadi, Halstead, Smitt, McCool: "BonnBot-I Plus" (2024), arXiv
+/// 2405.09118. Table tab:realPlanning: nOTSP with static division, loss in %, travel of an axis in
+/// m (mean and spread). Table tab:weedCatsHits: treated share in %, at 1.0 m/s.
 struct PaperFigures {
   std::string_view field;         ///< the paper's name
   std::string_view generated_as;  ///< our field of the same density; not the recording itself

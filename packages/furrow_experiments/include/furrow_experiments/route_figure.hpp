@@ -19,7 +19,7 @@ struct RouteExample {
 };
 
 /// The stretch from above as an <svg> element, to scale: travel to the right, y (left of the robot)
-/// up; weeds treated and missed, crops, footprints, and each axis's way from spray to spray.
+/// up. It shows weeds treated and missed, crops, footprints, and each axis's way between sprays.
 [[nodiscard]] std::string to_svg(const RouteExample& example);
 
 }  // namespace furrow::experiments

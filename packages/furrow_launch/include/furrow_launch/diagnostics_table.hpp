@@ -9,7 +9,7 @@
 
 namespace furrow::launch {
 
-/// What the other processes last told of their health, and the wire of this one, for the report.
+/// The last reported health of the other processes, and of this one's transport, for the report.
 [[nodiscard]] ledger::ReportTable diagnostics_table(
     const std::map<std::string, diagnostic_msgs::msg::DiagnosticStatus>& diagnostics,
     const std::string& own_process);

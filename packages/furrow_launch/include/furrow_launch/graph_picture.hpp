@@ -8,9 +8,9 @@
 
 namespace furrow::launch {
 
-/// A graph as SVG: a column for each component, under its process and host; a line for each topic,
-/// from a dot at who publishes it to arrowheads at who reads it. Its colour says how far it goes:
-/// within a process, between processes, between hosts.
+/// A graph as SVG. Each component is a column, under its process and host. Each topic is a line,
+/// from a dot at its publisher to arrowheads at its subscribers. The colour of a line says how far
+/// its messages go: within a process, between processes, between hosts.
 [[nodiscard]] std::string graph_picture(const graph::GraphSpec& graph,
                                         std::span<const graph::Connection> connections,
                                         std::span<const graph::PlacedProcess> processes);

@@ -8,8 +8,8 @@
 
 namespace furrow::launch {
 
-/// A graph as the command line asks for it: its file, expanded over the axes of its tool, with the
-/// settings put over it.
+/// A graph as the command line asks for it: its file, expanded over the axes of its tool and merged
+/// with the settings.
 struct PreparedGraph {
   graph::GraphSpec spec;
   std::vector<std::string> axes;  ///< names, in the order of the tool model

@@ -7,8 +7,8 @@
 
 namespace furrow::launch {
 
-/// What went wrong on the wire of a process, from one look to the next: a warning while there are
-/// new misses, with the topics; counters over the whole run.
+/// The faults of a process's transport: a warning, with the topics, while there are faults since
+/// the last look; counters over the whole run.
 class TransportHealth {
  public:
   explicit TransportHealth(const dds::DdsTransport& transport) : transport_(transport) {}

@@ -27,9 +27,9 @@ struct SupervisorOptions {
   bool stop_reporter_first = false;
 };
 
-/// Starts the processes of one host, restarts a process that dies, and ends all together: when the
-/// run is finished, when a process cannot be restarted, or on SIGINT and SIGTERM. An exit code says
-/// how a process ended: 0 well, 2 wrongly configured, anything else is a death.
+/// Starts the processes of one host, restarts a process that dies, and ends all together. They end
+/// when the run is finished, when a process cannot be restarted, or on SIGINT and SIGTERM. An exit
+/// code says how a process ended: 0 well, 2 wrongly configured, anything else is a death.
 class Supervisor {
  public:
   Supervisor(std::vector<SupervisedProcess> processes, SupervisorOptions options);
@@ -37,8 +37,9 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// The exit code for the user: that of the process that reports, also where it had to be stopped
-  /// after the others saw the end of the run; else 0 when the run was finished. To be called once.
+  /// The exit code for the user. Where a process reports, it is that of this process, also when it
+  /// had to be stopped after the others saw the end of the run. Elsewhere it is 0 when the run was
+  /// finished. To be called once.
   [[nodiscard]] int run();
 
  private:
