@@ -1,4 +1,5 @@
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -24,7 +25,7 @@ struct RunCommandOptions {
   bool supervised = false;  ///< the supervisor has claimed the folder of the report
 };
 
-launch::RunOutcome run_session(launch::RunSession& session) {
+launch::RunOutcome run_session(launch::RunSession& session, launch::SignalPipe& signals) {
   ProgressBar bar("weeding");
   const launch::RunSession::Callbacks callbacks = {
       .progress =
@@ -34,7 +35,6 @@ launch::RunOutcome run_session(launch::RunSession& session) {
                                             fixed(status.speed_mps(), 2) + " m/s");
           },
       .warn = [](const std::string& text) { std::cerr << "furrow: " << text << '\n'; }};
-  launch::SignalPipe signals({SIGINT, SIGTERM});
   launch::RunOutcome outcome = session.run(signals, callbacks);
   bar.finish();
   return outcome;
@@ -58,7 +58,12 @@ int run(const RunCommandOptions& options) {
   const std::filesystem::path folder =
       claimed ? claimed->path() : std::filesystem::path(options.run.out);
 
-  const launch::RunOutcome outcome = run_session(session);
+  launch::SignalPipe signals({SIGINT, SIGTERM});
+  const launch::RunOutcome outcome = run_session(session, signals);
+  // The report is worth waiting for: one signal does not lose it, a second one ends the process.
+  const launch::SignalWatch impatience(signals, [](int call) {
+    if (call > 1) std::_Exit(1);
+  });
   const bool has_report = session.reports() && outcome.record != nullptr;
   const bool well = !outcome.result.failed && outcome.result.reason == "finished";
   if (!well || outcome.interrupted) {

@@ -19,7 +19,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kPatienceWithInterrupt{2};
+// One step of a rendered run takes a while on a busy computer.
+constexpr std::chrono::seconds kPatienceWithInterrupt{5};
 
 const graph::PlacedProcess& pick_process(const std::vector<graph::PlacedProcess>& placed,
                                          const graph::DeploymentSpec& deployment,

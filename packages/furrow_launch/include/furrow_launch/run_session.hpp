@@ -49,7 +49,7 @@ class RunSession {
   [[nodiscard]] const PreparedGraph& prepared() const { return prepared_; }
 
   /// Runs until the run is finished, or until a signal. The first signal asks for an end with the
-  /// record of what was done so far; a second one, or two seconds, end the run as it is. To be
+  /// record of what was done so far; a second one, or five seconds, end the run as it is. To be
   /// called once. Throws ConfigError, and std::runtime_error when the transport cannot start.
   [[nodiscard]] RunOutcome run(SignalPipe& signals, const Callbacks& callbacks);
 
