@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bounds the search; nobody keeps so many results of one name.
+/// Bounds the search: more results of one name than any user keeps.
 constexpr int kMaxNumber = 10'000;
 
 Error refusal(const fs::path& path, const std::string& why) {

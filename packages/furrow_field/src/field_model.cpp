@@ -44,23 +44,23 @@ Status validate_extent(const FieldModel& field) {
 }
 
 Status validate_plant(const Plant& plant, const FieldModel& field) {
-  const std::string who = "plant " + std::to_string(plant.id);
+  const std::string name = "plant " + std::to_string(plant.id);
   if (!is_plain_text(plant.species)) {
-    return error(ErrorCode::kInvalidArgument, who + ": species holds a control character");
+    return error(ErrorCode::kInvalidArgument, name + ": species holds a control character");
   }
   if (!plant.p_F_m.allFinite() || !std::isfinite(plant.heading_rad)) {
-    return error(ErrorCode::kOutOfRange, who + ": position or heading is not finite");
+    return error(ErrorCode::kOutOfRange, name + ": position or heading is not finite");
   }
   const bool inside = plant.p_F_m.x() >= 0.0 && plant.p_F_m.x() <= field.length_m &&
                       std::abs(plant.p_F_m.y()) <= 0.5 * field.width_m;
-  if (!inside) return error(ErrorCode::kOutOfRange, who + ": stands outside the field");
+  if (!inside) return error(ErrorCode::kOutOfRange, name + ": stands outside the field");
   if (!(std::isfinite(plant.radius_m) && plant.radius_m >= 0.0)) {
-    return error(ErrorCode::kOutOfRange, who + ": radius_m must be finite and not negative");
+    return error(ErrorCode::kOutOfRange, name + ": radius_m must be finite and not negative");
   }
   if (!(std::isfinite(plant.area_mm2) && plant.area_mm2 >= 0.0)) {
-    return error(ErrorCode::kOutOfRange, who + ": area_mm2 must be finite and not negative");
+    return error(ErrorCode::kOutOfRange, name + ": area_mm2 must be finite and not negative");
   }
-  if (plant.leaves < 0) return error(ErrorCode::kOutOfRange, who + ": leaves is negative");
+  if (plant.leaves < 0) return error(ErrorCode::kOutOfRange, name + ": leaves is negative");
   return {};
 }
 

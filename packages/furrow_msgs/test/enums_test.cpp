@@ -56,7 +56,7 @@ TEST(Enums, MessageWithoutContentIsNeitherADecisionNorAnEvent) {
   EXPECT_FALSE(from_msg(furrow_msgs::msg::AxisEventKind()).ok());
 }
 
-TEST(Enums, AreOneByteOnTheWire) {
+TEST(Enums, AreOneByteOfCdr) {
   furrow_msgs::msg::SafetyCause message = to_msg(SafetyCause::kValveFault);
   const MessageType& type = message_type<furrow_msgs::msg::SafetyCause>();
   std::vector<std::byte> bytes(type.serialized_size(&message));

@@ -66,7 +66,8 @@ struct PrintLimits {
   std::size_t max_text = 200;     ///< of a string
 };
 
-/// A message as indented text, "name: value" a line; enumerations as "name: value (CONSTANT)".
+/// A message as indented text, one "name: value" on each line. Enumerations print as
+/// "name: value (CONSTANT)".
 /// kNotFound: the schema has no such struct. kParse: the CDR form (XCDR1, with its encapsulation
 /// header) is truncated or of another type.
 [[nodiscard]] Result<std::string> print_cdr(const IdlSchema& schema, const std::string& struct_name,

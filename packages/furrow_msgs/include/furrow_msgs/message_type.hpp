@@ -10,12 +10,12 @@
 
 namespace furrow::msgs {
 
-/// What the middleware needs to know of a message type, without naming the C++ class. One object
-/// per type, alive as long as the program: compare by address.
+/// A message type for the middleware, which does not know the C++ class. One object per type with
+/// static lifetime: compare by address.
 struct MessageType {
   std::string_view dds_name;  ///< "sensor_msgs::msg::dds_::Image_"
   std::string_view ros_name;  ///< "sensor_msgs/msg/Image"
-  std::string_view idl;       ///< the type and all it is made of, as OMG IDL
+  std::string_view idl;       ///< the type and all types that it uses, as OMG IDL
 
   std::shared_ptr<void> (*create)();
   /// Bytes of the CDR form, with its encapsulation header of four bytes.

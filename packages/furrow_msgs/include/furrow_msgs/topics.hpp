@@ -9,9 +9,9 @@
 
 namespace furrow::msgs {
 
-/// What is said of a topic, once.
+/// Declaration of a topic.
 struct Topic {
-  std::string_view name;  ///< as in the graph file; on the wire "rt/" stands before it
+  std::string_view name;  ///< as in the graph file; its DDS name has "rt/" before it
   const MessageType* type = nullptr;
   Qos qos;
   double rate_hz = 0.0;  ///< usual rate; 0: on change
