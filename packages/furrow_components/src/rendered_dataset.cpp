@@ -79,7 +79,34 @@ field::FieldParameters draw_field(const RenderedDatasetParameters& p,
   field.weed_leaves_max = random.integer(2, 8);
   field.size_sd = random.uniform(0.1, 0.25);
   field.weed_to_crop_min_m = 0.01;
+  if (p.variety > 0.0) {
+    field.crop_leaves_max =
+        std::min<std::int64_t>(14, field.crop_leaves_max + random.integer(0, 6));
+    field.weed_leaves_max =
+        std::min<std::int64_t>(14, field.weed_leaves_max + random.integer(0, 6));
+    field.size_sd = random.uniform(0.1, 0.1 + 0.3 * p.variety);
+  }
   return field;
+}
+
+/// The same species of other sizes in each image: how large a beet is beside its weeds depends on
+/// the weather and on when each came up.
+field::SpeciesTable varied_sizes(const field::SpeciesTable& species, double variety,
+                                 std::uint64_t seed) {
+  if (variety <= 0.0) return species;
+  Random random(seed, "species sizes");
+  std::vector<field::Species> varied = species.all();
+  // Labelled beets on real fields reach a radius of 150 mm, their weeds 100 mm; both follow the
+  // season.
+  const double season = random.uniform(-0.5, 0.6);
+  for (field::Species& entry : varied) {
+    const double size = std::exp(variety * (season + random.uniform(-0.3, 0.3)));
+    entry.radius_two_leaves_m *= size;
+    entry.radius_eight_leaves_m *= size;
+    entry.leaf_cover =
+        std::clamp(entry.leaf_cover * std::exp(variety * random.uniform(-0.3, 0.2)), 0.1, 0.7);
+  }
+  return field::SpeciesTable(std::move(varied));
 }
 
 std::vector<annotation::AnnotatedInstance> instances_of(const simulation::Frame& frame,
@@ -123,15 +150,16 @@ std::vector<annotation::AnnotatedInstance> instances_of(const simulation::Frame&
 
 /// The frames of one sequence; the last one is labelled.
 Result<std::vector<annotation::AnnotatedImage>> render_sequence(
-    const RenderedDatasetParameters& p, const field::SpeciesTable& species, std::uint64_t seed,
+    const RenderedDatasetParameters& p, const field::SpeciesTable& table, std::uint64_t seed,
     std::int64_t index, const std::filesystem::path& folder) {
   Random random(seed, "dataset", static_cast<std::uint64_t>(index));
   const std::uint64_t image_seed = random.next();
+  const field::SpeciesTable species = varied_sizes(table, p.variety, image_seed);
   auto field = field::generate_field(draw_field(p, species, random), species, image_seed);
   if (!field.ok()) return field.error();
   const Shot last = draw_shot(p, field->length_m, random);
   // The generator centres the field on y = 0 already; x runs from 0.
-  auto appearance = simulation::random_appearance(image_seed);
+  auto appearance = simulation::random_appearance(image_seed, p.variety);
   appearance.threads = p.threads;
   simulation::Renderer renderer(std::move(field).value(), appearance, image_seed, species);
 
@@ -227,6 +255,11 @@ void RenderedDatasetParameters::visit(ParameterVisitor& v) {
           weed_shares);
   v.visit({.name = "crop_share", .description = "images with crop rows", .min = 0, .max = 1},
           crop_share);
+  v.visit({.name = "variety",
+           .description = "of light, soil, sizes and forms, towards what real fields show",
+           .min = 0.0,
+           .max = 1.0},
+          variety);
   v.visit({.name = "validation_share", .description = "of the images", .min = 0, .max = 0.5},
           validation_share);
   v.visit({.name = "evaluation_share", .description = "of the images", .min = 0, .max = 0.5},

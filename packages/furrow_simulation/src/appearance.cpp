@@ -20,7 +20,34 @@ void RendererParameters::visit(ParameterVisitor& v) {
           threads);
 }
 
-RendererParameters random_appearance(std::uint64_t seed) {
+namespace {
+
+void add_variety(std::uint64_t seed, double variety, RendererParameters& p) {
+  Random random(seed, "appearance variety");
+  p.plants.form_variation = variety * random.uniform(0.3, 1.0);
+  if (random.bernoulli(0.35 * variety)) {  // hard sun
+    p.light.diffuse_share = random.uniform(0.05, 0.2);
+    p.light.sun_elevation_rad = random.uniform(0.3, 1.0);
+    p.light.contrast = random.uniform(1.0, 1.5);
+    p.light.exposure = random.uniform(0.8, 1.6);
+  } else if (random.bernoulli(0.15 * variety)) {  // lamps around the camera
+    p.light.sun_elevation_rad = 1.5;
+    p.light.diffuse_share = random.uniform(0.5, 1.0);
+    p.light.exposure = random.uniform(0.1, 0.35);
+    p.light.contrast = random.uniform(0.6, 1.1);
+    p.light.saturation = random.uniform(0.4, 1.0);
+    p.camera.vignetting = random.uniform(0.3, 0.8);
+  } else if (random.bernoulli(0.2 * variety)) {  // pale soil near white
+    p.light.exposure = random.uniform(1.5, 2.8);
+    p.light.saturation = random.uniform(0.5, 1.1);
+  }
+  if (random.bernoulli(0.4 * variety)) p.ground.stone_cover = random.uniform(0.01, 0.15);
+  if (random.bernoulli(0.25 * variety)) p.ground.straw_per_m2 = random.uniform(50.0, 300.0);
+}
+
+}  // namespace
+
+RendererParameters random_appearance(std::uint64_t seed, double variety) {
   RendererParameters p;
   Random ground(seed, "appearance ground");
   // From pale loess over brown and red loams to dark peat.
@@ -83,6 +110,7 @@ RendererParameters random_appearance(std::uint64_t seed) {
   p.camera.image_noise = camera.uniform(0.3, 5.0);
   p.camera.depth_noise_m = camera.uniform(0.0, 0.004);
   p.camera.depth_hole_share = camera.uniform(0.0, 0.03);
+  if (variety > 0.0) add_variety(seed, variety, p);
   return p;
 }
 

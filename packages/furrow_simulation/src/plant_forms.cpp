@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "leaf.hpp"
+#include "leaf_style.hpp"
 
 namespace furrow::simulation {
 namespace {
@@ -14,90 +15,42 @@ using field::LeafForm;
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kGoldenAngle = 2.39996323f;
 
-// Colours as seen in pictures; squared they are linear.
-struct Colors {
-  Eigen::Vector3f leaf;
-  Eigen::Vector3f young;
-  Eigen::Vector3f stalk;
-};
-
-Colors form_colors(LeafForm form) {
-  switch (form) {
-    case LeafForm::kBeet:
-      return {{0.38f, 0.56f, 0.22f}, {0.50f, 0.66f, 0.28f}, {0.60f, 0.68f, 0.42f}};
-    case LeafForm::kBroadleaf:
-      return {{0.42f, 0.58f, 0.26f}, {0.52f, 0.66f, 0.30f}, {0.58f, 0.52f, 0.36f}};
-    case LeafForm::kLobed:
-      return {{0.44f, 0.56f, 0.36f}, {0.60f, 0.68f, 0.50f}, {0.56f, 0.60f, 0.40f}};
-    case LeafForm::kGrass:
-      return {{0.46f, 0.62f, 0.26f}, {0.56f, 0.68f, 0.30f}, {0.56f, 0.58f, 0.36f}};
-    case LeafForm::kFeathery:
-      return {{0.36f, 0.56f, 0.24f}, {0.46f, 0.64f, 0.28f}, {0.48f, 0.60f, 0.32f}};
-    case LeafForm::kTrifoliate:
-      return {{0.36f, 0.58f, 0.28f}, {0.46f, 0.66f, 0.32f}, {0.50f, 0.58f, 0.34f}};
-    case LeafForm::kRosette:
-      return {{0.42f, 0.60f, 0.28f}, {0.52f, 0.68f, 0.30f}, {0.54f, 0.58f, 0.34f}};
-    case LeafForm::kThistle:
-      return {{0.38f, 0.54f, 0.30f}, {0.52f, 0.64f, 0.40f}, {0.58f, 0.62f, 0.46f}};
-    case LeafForm::kWhorled:
-      return {{0.36f, 0.54f, 0.24f}, {0.46f, 0.62f, 0.28f}, {0.46f, 0.54f, 0.30f}};
-  }
-  return {};
-}
-
 class FormBuilder {
  public:
   FormBuilder(PlantMesh& mesh, const PlantShape& shape, const PlantParameters& parameters,
               Random& random)
       : mesh_(mesh), shape_(shape), parameters_(parameters), random_(random) {
-    colors_ = form_colors(shape.form);
+    colors_ = leaf_colors(shape.form);
     plant_hue_ = noise(0.08f * variation());
     plant_gain_ = 1.0f + noise(0.16f * variation());
     yellow_ = random_.bernoulli(0.3 * parameters.leaf_damage) ? uniform(0.15f, 0.6f) : 0.0f;
+    habit_ = varied_habit(shape.form, shape.leaves, parameters.form_variation, random_);
+    colors_.stalk.x() *= habit_.stalk_red_gain;
   }
 
   void build() {
-    switch (shape_.form) {
+    const LeafStyle style =
+        varied(leaf_style(habit_.form), habit_.form, parameters_.form_variation, random_);
+    switch (habit_.form) {
       case LeafForm::kBeet:
-        return rosette(beet_style());
+      case LeafForm::kRosette:
+      case LeafForm::kThistle:
+        return rosette(style);
       case LeafForm::kBroadleaf:
-        return pairs(broadleaf_style());
       case LeafForm::kLobed:
-        return pairs(lobed_style());
+        return habit_.sprawls ? sprawl(style) : pairs(style);
       case LeafForm::kGrass:
         return grass();
       case LeafForm::kFeathery:
         return feathery();
       case LeafForm::kTrifoliate:
         return trifoliate();
-      case LeafForm::kRosette:
-        return rosette(round_style());
-      case LeafForm::kThistle:
-        return rosette(thistle_style());
       case LeafForm::kWhorled:
         return whorls();
     }
   }
 
  private:
-  struct Style {
-    Outline outline = Outline::kOval;
-    Outline cotyledon = Outline::kOval;
-    float cotyledon_length = 0.35f;
-    float cotyledon_width = 0.12f;
-    float length = 0.7f;  // of the blade
-    float width = 0.4f;   // of the blade, both halves
-    float petiole = 0.3f;
-    float petiole_width = 0.05f;
-    float pitch = 0.35f;
-    float droop = 0.7f;
-    float fold = 0.15f;
-    float wave = 0.03f;
-    float waves = 2.5f;
-    float node = 0.14f;  // between pairs of leaves along the stem
-    int rows = 12;
-  };
-
   [[nodiscard]] float variation() const { return static_cast<float>(parameters_.leaf_variation); }
   float uniform(float low, float high) { return static_cast<float>(random_.uniform(low, high)); }
   float noise(float deviation) {
@@ -118,7 +71,7 @@ class FormBuilder {
     return color(colors_.leaf + (colors_.young - colors_.leaf) * std::clamp(youth, 0.0f, 1.0f));
   }
 
-  Leaf blade(const Style& style, float size, float azimuth, float pitch) {
+  Leaf blade(const LeafStyle& style, float size, float azimuth, float pitch) {
     Leaf leaf;
     leaf.azimuth_rad = azimuth;
     leaf.pitch_rad = pitch;
@@ -142,7 +95,7 @@ class FormBuilder {
     add_stalk(mesh_, from, to, std::max(width, shape_.stalk_width), sag, albedo);
   }
 
-  void petiole_and_blade(const Style& style, Leaf leaf, const Eigen::Vector3f& from, float size,
+  void petiole_and_blade(const LeafStyle& style, Leaf leaf, const Eigen::Vector3f& from, float size,
                          float rise) {
     const float length = style.petiole * size;
     const Eigen::Vector3f to =
@@ -156,7 +109,7 @@ class FormBuilder {
           0.08f * length, color(colors_.stalk));
   }
 
-  void cotyledons(const Style& style, float azimuth, float size) {
+  void cotyledons(const LeafStyle& style, float azimuth, float size) {
     for (int side = 0; side < 2; ++side) {
       Leaf leaf = blade(style, 1.0f, azimuth + kPi * static_cast<float>(side) + noise(0.1f),
                         uniform(0.05f, 0.3f));
@@ -172,92 +125,9 @@ class FormBuilder {
     }
   }
 
-  Style beet_style() const {
-    return {.outline = Outline::kOval,
-            .cotyledon = Outline::kOval,
-            .cotyledon_length = 0.42f,
-            .cotyledon_width = 0.15f,
-            .length = 0.76f,
-            .width = 0.40f,
-            .petiole = 0.26f,
-            .petiole_width = 0.055f,
-            .pitch = 0.55f,
-            .droop = 0.95f,
-            .fold = 0.22f,
-            .wave = 0.035f,
-            .waves = 2.3f,
-            .rows = 14};
-  }
-  Style round_style() const {
-    return {.outline = Outline::kRound,
-            .cotyledon = Outline::kRound,
-            .cotyledon_length = 0.3f,
-            .cotyledon_width = 0.22f,
-            .length = 0.42f,
-            .width = 0.36f,
-            .petiole = 0.5f,
-            .petiole_width = 0.045f,
-            .pitch = 0.12f,
-            .droop = 0.3f,
-            .fold = 0.1f,
-            .wave = 0.01f,
-            .waves = 2.0f,
-            .rows = 8};
-  }
-  Style thistle_style() const {
-    return {.outline = Outline::kToothed,
-            .cotyledon = Outline::kObovate,
-            .cotyledon_length = 0.3f,
-            .cotyledon_width = 0.18f,
-            .length = 0.92f,
-            .width = 0.32f,
-            .petiole = 0.05f,
-            .petiole_width = 0.06f,
-            .pitch = 0.3f,
-            .droop = 0.55f,
-            .fold = 0.25f,
-            .wave = 0.03f,
-            .waves = 5.0f,
-            .rows = 30};
-  }
-  Style broadleaf_style() const {
-    return {.outline = Outline::kPointed,
-            .cotyledon = Outline::kOval,
-            .cotyledon_length = 0.5f,
-            .cotyledon_width = 0.13f,
-            .length = 0.62f,
-            .width = 0.34f,
-            .petiole = 0.26f,
-            .petiole_width = 0.04f,
-            .pitch = 0.3f,
-            .droop = 0.55f,
-            .fold = 0.2f,
-            .wave = 0.015f,
-            .waves = 2.0f,
-            .node = 0.16f,
-            .rows = 12};
-  }
-  Style lobed_style() const {
-    return {.outline = Outline::kRhombic,
-            .cotyledon = Outline::kStrap,
-            .cotyledon_length = 0.45f,
-            .cotyledon_width = 0.10f,
-            .length = 0.60f,
-            .width = 0.44f,
-            .petiole = 0.30f,
-            .petiole_width = 0.035f,
-            .pitch = 0.35f,
-            .droop = 0.5f,
-            .fold = 0.12f,
-            .wave = 0.012f,
-            .waves = 3.0f,
-            .node = 0.17f,
-            .rows = 20};
-  }
-
   // Leaves around a short stem, the oldest outside.
-  void rosette(const Style& style) {
-    const int leaves = shape_.leaves;
+  void rosette(const LeafStyle& style) {
+    const int leaves = habit_.leaves;
     const bool with_cotyledons = leaves <= 6;
     if (with_cotyledons) cotyledons(style, shape_.heading_rad, leaves <= 2 ? 2.2f : 1.1f);
     const int true_leaves = leaves - (with_cotyledons ? 2 : 0);
@@ -266,6 +136,9 @@ class FormBuilder {
       const float age = 1.0f - static_cast<float>(n) / static_cast<float>(std::max(true_leaves, 1));
       // Early leaves come in pairs, later ones in a spiral.
       if (n > 0) azimuth += n < 4 && n % 2 == 1 ? kPi : (n < 4 ? 0.5f * kPi : kGoldenAngle);
+      if (habit_.missing_leaf_probability > 0.0 && true_leaves > 2 &&
+          random_.bernoulli(habit_.missing_leaf_probability))
+        continue;
       const float size = (0.52f + 0.48f * std::sqrt(age)) * uniform(0.86f, 1.08f);
       const float inner = 1.0f - age;
       const float pitch = style.pitch * (0.5f + 1.3f * inner) + noise(0.12f);
@@ -277,7 +150,7 @@ class FormBuilder {
   }
 
   // Pairs of leaves on an upright stem, each turned by a right angle to the one below.
-  void pairs(const Style& style) {
+  void pairs(const LeafStyle& style) {
     cotyledons(style, shape_.heading_rad, shape_.leaves <= 2 ? 2.0f : 1.0f);
     const int true_leaves = shape_.leaves - 2;
     const int nodes = (true_leaves + 1) / 2;
@@ -297,6 +170,37 @@ class FormBuilder {
             blade(style, size, azimuth + kPi * static_cast<float>(side) + noise(0.15f), pitch);
         leaf.albedo_rgb = leaf_color(1.1f * (1.0f - age));
         petiole_and_blade(style, leaf, node, size, pitch + 0.1f);
+      }
+    }
+  }
+
+  // Shoots that lie on the ground around the stem, with leaves on alternate sides: knotweeds,
+  // bindweeds.
+  void sprawl(const LeafStyle& style) {
+    if (habit_.leaves <= 4) cotyledons(style, shape_.heading_rad, habit_.leaves <= 2 ? 2.0f : 1.0f);
+    const int shoots = std::clamp(1 + habit_.leaves / 3, 1, 5);
+    for (int k = 0; k < shoots; ++k) {
+      const float azimuth = shape_.heading_rad +
+                            2.0f * kPi * static_cast<float>(k) / static_cast<float>(shoots) +
+                            noise(0.35f);
+      const int leaves = 2 + static_cast<int>(random_.integer(0, 2));
+      const float reach = uniform(0.35f, 0.8f);
+      float heading = azimuth;
+      Eigen::Vector3f node(0.0f, 0.0f, 0.04f);
+      for (int n = 0; n < leaves; ++n) {
+        const float along = static_cast<float>(n) / static_cast<float>(leaves);
+        heading += noise(0.25f);
+        const Eigen::Vector3f next =
+            node + reach / static_cast<float>(leaves) *
+                       Eigen::Vector3f(std::cos(heading), std::sin(heading), 0.25f - 0.3f * along);
+        stalk(node, next, 0.045f, 0.0f, color(colors_.stalk));
+        node = next;
+        const float size = (0.75f - 0.3f * along) * uniform(0.7f, 1.1f);
+        const bool last = n + 1 == leaves;
+        const float side = last ? noise(0.3f) : (n % 2 == 0 ? 1.0f : -1.0f) * uniform(0.5f, 1.2f);
+        Leaf leaf = blade(style, size, heading + side, 0.5f * style.pitch + noise(0.15f));
+        leaf.albedo_rgb = leaf_color(0.8f * along);
+        petiole_and_blade(style, leaf, node, 0.6f * size, 0.1f);
       }
     }
   }
@@ -326,7 +230,8 @@ class FormBuilder {
   // A rachis with pairs of forked, narrow pinnae.
   void feathery() {
     const int leaves = shape_.leaves;
-    Style style{.cotyledon = Outline::kStrap, .cotyledon_length = 0.5f, .cotyledon_width = 0.07f};
+    LeafStyle style{
+        .cotyledon = Outline::kStrap, .cotyledon_length = 0.5f, .cotyledon_width = 0.07f};
     if (leaves <= 4) cotyledons(style, shape_.heading_rad, leaves <= 2 ? 2.0f : 1.1f);
     const int fronds = leaves <= 4 ? leaves - 2 : leaves;
     for (int n = 0; n < fronds; ++n) {
@@ -386,7 +291,8 @@ class FormBuilder {
 
   void trifoliate() {
     const int leaves = shape_.leaves;
-    Style style{.cotyledon = Outline::kRound, .cotyledon_length = 0.3f, .cotyledon_width = 0.2f};
+    LeafStyle style{
+        .cotyledon = Outline::kRound, .cotyledon_length = 0.3f, .cotyledon_width = 0.2f};
     if (leaves <= 4) cotyledons(style, shape_.heading_rad, leaves <= 2 ? 2.2f : 1.2f);
     const int stalks = leaves <= 4 ? leaves - 2 : leaves;
     for (int n = 0; n < stalks; ++n) {
@@ -420,7 +326,8 @@ class FormBuilder {
   }
 
   void whorls() {
-    Style style{.cotyledon = Outline::kOval, .cotyledon_length = 0.42f, .cotyledon_width = 0.24f};
+    LeafStyle style{
+        .cotyledon = Outline::kOval, .cotyledon_length = 0.42f, .cotyledon_width = 0.24f};
     cotyledons(style, shape_.heading_rad, shape_.leaves <= 2 ? 2.0f : 1.2f);
     const int whorl_count = std::min((shape_.leaves - 1) / 2, 5);
     Eigen::Vector3f node(0.0f, 0.0f, 0.05f);
@@ -455,7 +362,8 @@ class FormBuilder {
   const PlantShape& shape_;
   const PlantParameters& parameters_;
   Random& random_;
-  Colors colors_;
+  LeafColors colors_;
+  PlantHabit habit_;
   float plant_hue_ = 0.0f;
   float plant_gain_ = 1.0f;
   float yellow_ = 0.0f;

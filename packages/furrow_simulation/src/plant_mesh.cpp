@@ -76,6 +76,12 @@ void PlantParameters::visit(ParameterVisitor& v) {
           leaf_curl);
   v.visit({.name = "leaf_damage", .description = "yellowing and spots", .min = 0.0, .max = 1.0},
           leaf_damage);
+  v.visit({.name = "form_variation",
+           .description = "of proportions, outlines and habit between plants of one species; 0: "
+                          "each species has one form",
+           .min = 0.0,
+           .max = 1.0},
+          form_variation);
   v.visit(
       {.name = "plant_height_scale", .description = "upright against flat", .min = 0.1, .max = 2.0},
       plant_height_scale);

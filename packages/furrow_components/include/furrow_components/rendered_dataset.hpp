@@ -30,6 +30,7 @@ struct RenderedDatasetParameters {
   double weeds_per_m2_max = 80.0;
   std::vector<double> weed_shares;  ///< beside the weeds of the species table; empty: equal
   double crop_share = 0.85;         ///< images with a crop row
+  double variety = 0.0;             ///< of light, soil, sizes and forms; see random_appearance
   std::int64_t sequence_frames = 1;
   double velocity_mps = 0.5;  ///< within a sequence
   double frame_rate_hz = 5.0;

@@ -22,7 +22,9 @@ struct RendererParameters {
 };
 
 /// A random soil, light, condition of the plants, and camera, drawn widely, for training data.
-/// Resolution and threads keep their defaults.
-[[nodiscard]] RendererParameters random_appearance(std::uint64_t seed);
+/// Resolution and threads keep their defaults. Above 0, `variety` (up to 1) lets forms vary within
+/// a species. A share of the images then gets a low sun with black shadows, lamps in the dark,
+/// overexposed soil, many stones or much straw.
+[[nodiscard]] RendererParameters random_appearance(std::uint64_t seed, double variety = 0.0);
 
 }  // namespace furrow::simulation

@@ -24,6 +24,7 @@ struct PlantParameters {
   double leaf_gloss = 0.5;
   double leaf_curl = 0.5;
   double leaf_damage = 0.1;
+  double form_variation = 0.0;
   double plant_height_scale = 1.0;
   double leaf_sway_m = 0.0;
 
