@@ -87,6 +87,8 @@ def export(model, classes, out, resolution_mm_per_px):
 def main():
     parser = training_run.parser(__doc__.split("\n")[0], batch=8, size=384, rate=2e-3)
     parser.add_argument("--width", type=float, default=1.0, help="factor of the numbers of channels")
+    parser.add_argument("--resume", action="store_true",
+                        help="go on from checkpoint.pt in --out, which each epoch writes")
     arguments = parser.parse_args()
     device = training_run.prepare(arguments)
     checkpoint = torch.load(arguments.start, map_location="cpu") if arguments.start else None
@@ -99,13 +101,18 @@ def main():
     average = torch.optim.swa_utils.AveragedModel(
         model, avg_fn=lambda mean, new, _: 0.995 * mean + 0.005 * new, use_buffers=True)
     weights = training_run.class_weights(train).to(device)
-    samples = training_run.Samples(train, arguments.size, arguments.seed, make_sample)
+    samples = training_run.Samples(train, arguments.size, arguments.seed, make_sample,
+                                   arguments.randomise)
     loader = training_run.loader(samples, arguments)
     optimizer = torch.optim.AdamW(model.parameters(), lr=arguments.rate, weight_decay=1e-4)
     progress = training_run.Progress(arguments, len(loader))
     losses = LOSSES if 0 < crops < len(train.classes) else LOSSES[:-1]
     log, best = training_run.Log(arguments.out, "", losses, SCORES), -1.0
-    for epoch in range(arguments.epochs):
+    saved = training_run.Checkpoint(
+        arguments.out / "checkpoint.pt",
+        {"model": model, "average": average, "optimizer": optimizer}, progress, samples)
+    first_epoch = saved.resume() if arguments.resume else 0
+    for epoch in range(first_epoch, arguments.epochs):
         samples.epoch = epoch
         sums, first = {}, progress.steps
         for image, *maps in loader:
@@ -132,6 +139,9 @@ def main():
             torch.save({"model": average.module.state_dict(), "classes": train.classes,
                         "width": arguments.width}, arguments.out / "one_stage.pt")
             export(average.module, train.classes, arguments.out, arguments.resolution)
+        torch.save({"model": average.module.state_dict(), "classes": train.classes,
+                    "width": arguments.width}, arguments.out / "last.pt")
+        saved.save()
         if progress.done():
             break
 

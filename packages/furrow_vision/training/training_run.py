@@ -12,6 +12,7 @@ import torch
 
 import augment
 import data
+import domain_randomisation
 
 
 def parser(description, batch, size, rate):
@@ -29,6 +30,9 @@ def parser(description, batch, size, rate):
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--threads", type=int, default=2)
     options.add_argument("--resolution", type=float, default=1.15, help="mm per px of the images")
+    options.add_argument("--randomise", type=float, default=0.0, metavar="SHARE",
+                         help="share of the crops that domain_randomisation.py changes, also in scale "
+                              "and direction")
     return options
 
 
@@ -51,18 +55,25 @@ def load_sets(arguments, classes=None):
 
 class Samples(torch.utils.data.Dataset):
     """Crops of the training images, augmented, as `make` turns them into tensors. The random numbers
-    depend on seed, epoch and index."""
+    depend on seed, epoch and index. `randomise` is the share that gets domain randomisation."""
 
-    def __init__(self, coco, size, seed, make):
+    def __init__(self, coco, size, seed, make, randomise=0.0):
         self.coco, self.size, self.seed, self.make, self.epoch = coco, size, seed, make, 0
+        self.randomise = randomise
+        self.crops = sum(kind == "crop" for _, kind in coco.classes)
 
     def __len__(self):
         return len(self.coco)
 
     def __getitem__(self, i):
         rng = np.random.default_rng((self.seed, self.epoch, i))
-        image, ids, plants = augment.crop_and_turn(rng, *self.coco.load(i), self.size)
-        return self.make(augment.photometric(rng, image), ids, plants)
+        if self.randomise == 0.0 or rng.random() >= self.randomise:
+            image, ids, plants = augment.crop_and_turn(rng, *self.coco.load(i), self.size)
+            return self.make(augment.photometric(rng, image), ids, plants)
+        image, ids, plants = augment.crop_and_turn(rng, *self.coco.load(i), self.size, (0.6, 1.7))
+        image, ids, plants = augment.quarter_turn(rng, image, ids, plants)
+        image, ids = domain_randomisation.randomise(rng, image, ids, plants, self.crops)
+        return self.make(image, ids, plants)
 
 
 def loader(samples, arguments, collate=None):
@@ -88,6 +99,33 @@ def class_weights(coco, limit=200):
             pixels[class_index] += count
     weights = 1 / np.sqrt(pixels)
     return torch.tensor(weights / weights.mean(), dtype=torch.float32)
+
+
+class Checkpoint:
+    """The state of a training, written after each epoch, so that it can be stopped and gone on with.
+    `parts` have state_dict() and load_state_dict()."""
+
+    def __init__(self, file, parts, progress, samples):
+        self.file, self.parts, self.progress, self.samples = file, parts, progress, samples
+
+    def save(self):
+        state = {name: part.state_dict() for name, part in self.parts.items()}
+        state.update(steps=self.progress.steps, minutes=self.progress.minutes(), epoch=self.samples.epoch)
+        temporary = self.file.with_suffix(".new")
+        torch.save(state, temporary)
+        temporary.replace(self.file)
+
+    def resume(self):
+        """Returns the first epoch that is still to be done."""
+        if not self.file.exists():
+            return 0
+        state = torch.load(self.file, map_location="cpu")
+        for name, part in self.parts.items():
+            part.load_state_dict(state[name])
+        self.progress.steps = state["steps"]
+        self.progress.start = time.time() - 60 * state["minutes"]
+        print(f"{self.file}: {state['steps']} steps, {state['minutes']:.1f} minutes are done", flush=True)
+        return state["epoch"] + 1
 
 
 class Progress:
