@@ -40,7 +40,8 @@ EvaluationSet render_evaluation_set(const RenderedSet& wanted, const fs::path& f
         progress(static_cast<double>(count) / static_cast<double>(wanted.images));
       });
   if (!done.ok()) throw std::runtime_error(done.error().message);
-  EvaluationSet set{"rendered", parameters.resolution_mm_per_px, {}};
+  EvaluationSet set{
+      .name = "rendered", .resolution_mm_per_px = parameters.resolution_mm_per_px, .dataset = {}};
   for (const char* part : {"evaluation.json", "validation.json", "train.json"}) {
     annotation::Dataset read = value_or_throw(annotation::read_coco(folder / part));
     set.dataset.classes = read.classes;
@@ -56,6 +57,7 @@ EvaluationSet open_evaluation_set(const fs::path& path) {
   set.notes = annotation::describe(dataset->report, path.string());
   set.name = dataset->name;
   set.resolution_mm_per_px = dataset->resolution_mm_per_px.value_or(set.resolution_mm_per_px);
+  set.resolution_known = dataset->resolution_mm_per_px.has_value();
   set.dataset = std::move(*dataset);
   return set;
 }

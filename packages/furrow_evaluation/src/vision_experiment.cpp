@@ -1,5 +1,6 @@
 #include "furrow_evaluation/vision_experiment.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -37,7 +38,7 @@ void evaluate_image(const annotation::AnnotatedImage& image, const LoadedImage& 
     throw std::runtime_error(image.path.string() + ": " + found.error().message);
   }
   on_set.ms.push_back(took.count());
-  const double miou = on_set.evaluation.add(image, *found, loaded.camera);
+  const double miou = on_set.evaluation.add(image, *found, loaded.camera, loaded.ground_distance_m);
   if (pictures && image.instances.size() >= kLeastPlantsOfPicture && on_set.gallery.wants(miou)) {
     on_set.gallery.add({.dataset = dataset,
                         .detector = on_set.named.name,
@@ -47,12 +48,31 @@ void evaluate_image(const annotation::AnnotatedImage& image, const LoadedImage& 
   }
 }
 
+/// Lets a given resolution overrule the data set's. Adds a note where one has to be assumed, and
+/// returns whether that is so.
+bool settle_resolution(const std::optional<double>& given_mm_per_px, EvaluationSet& set,
+                       std::vector<std::string>& notes) {
+  auto& images = set.dataset.images;
+  if (given_mm_per_px) {
+    set.resolution_mm_per_px = *given_mm_per_px;
+    for (auto& image : images) image.resolution_mm_per_px.reset();
+    return false;
+  }
+  const bool of_each_image = std::all_of(images.begin(), images.end(), [](const auto& image) {
+    return image.resolution_mm_per_px.has_value();
+  });
+  if (set.resolution_known || of_each_image) return false;
+  notes.push_back(set.name + ": ground resolution is unknown; " +
+                  fixed(set.resolution_mm_per_px, 2) +
+                  " mm per px is assumed, so sizes and distances in mm may be wrong. Give it with "
+                  "--resolution, or with resolution_mm_per_px in evaluation.json");
+  return true;
+}
+
 void evaluate_set(EvaluationSet set, std::vector<NamedDetector>& detectors,
                   const VisionExperiment& experiment, const std::function<void(double)>& progress,
                   VisionReport& report) {
-  if (experiment.resolution_mm_per_px) {
-    set.resolution_mm_per_px = *experiment.resolution_mm_per_px;
-  }
+  const bool assumed = settle_resolution(experiment.resolution_mm_per_px, set, set.notes);
   report.notes.insert(report.notes.end(), set.notes.begin(), set.notes.end());
   auto& images = set.dataset.images;
   std::erase_if(images, [](const auto& image) { return !image.labelled; });
@@ -62,7 +82,8 @@ void evaluate_set(EvaluationSet set, std::vector<NamedDetector>& detectors,
   std::vector<DetectorOnSet> running;
   for (NamedDetector& named : detectors) running.push_back({.named = named});
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const auto loaded = load_image(images[i], set.resolution_mm_per_px);
+    const auto loaded =
+        load_image(images[i], images[i].resolution_mm_per_px.value_or(set.resolution_mm_per_px));
     if (!loaded.ok()) throw std::runtime_error(loaded.error().message);
     for (DetectorOnSet& on_set : running) {
       evaluate_image(images[i], *loaded, set.name, experiment.pictures, on_set);
@@ -74,10 +95,12 @@ void evaluate_set(EvaluationSet set, std::vector<NamedDetector>& detectors,
     report.rows.push_back({.dataset = set.name,
                            .detector = on_set.named.name,
                            .scores = on_set.evaluation.scores(),
+                           .intervals = on_set.evaluation.intervals(experiment.seed),
                            .ms_per_frame = quantile(on_set.ms, 0.5)});
     on_set.gallery.move_to(report.pictures);
   }
-  report.parameters.emplace_back(set.name + "_mm_per_px", fixed(set.resolution_mm_per_px, 3));
+  report.parameters.emplace_back(
+      set.name + "_mm_per_px", fixed(set.resolution_mm_per_px, 3) + (assumed ? " (assumed)" : ""));
 }
 
 }  // namespace

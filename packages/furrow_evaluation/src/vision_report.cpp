@@ -19,6 +19,20 @@ Json figure(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
 
+Json interval_of(const vision::Interval& interval) {
+  return Json::array({figure(interval.low), figure(interval.high)});
+}
+
+Json intervals_of(const vision::ScoreIntervals& intervals) {
+  return {{"iou_vegetation", interval_of(intervals.iou_vegetation)},
+          {"iou_crop", interval_of(intervals.iou_crop)},
+          {"iou_weed", interval_of(intervals.iou_weed)},
+          {"miou", interval_of(intervals.miou)},
+          {"crops_sprayed_pct", interval_of(intervals.crops_sprayed_pct)},
+          {"weeds_found_pct", interval_of(intervals.weeds_found_pct)},
+          {"false_per_m2", interval_of(intervals.false_per_m2)}};
+}
+
 std::string cell(double value, int decimals) {
   return std::isfinite(value) ? fixed(value, decimals) : "-";
 }
@@ -38,12 +52,16 @@ std::vector<std::string> cells_of(const VisionRow& row) {
           cell(s.pq, 3),
           cell(s.stem_p50_mm, 2),
           cell(s.area_error_p50_pct, 1),
+          cell(s.outcome.crops_sprayed_pct(), 1),
+          cell(s.outcome.weeds_found_pct(), 1),
+          cell(s.outcome.false_per_m2(), 2),
           cell(row.ms_per_frame, 1)};
 }
 
 const std::vector<std::string> kHeader = {
-    "data set", "detector",  "images",   "IoU veg.", "crop",        "weed",       "mean",
-    "AP mask",  "AP50 mask", "AP50 box", "PQ",       "stem p50 mm", "area p50 %", "ms"};
+    "data set",   "detector",        "images",        "IoU veg.",  "crop", "weed",
+    "mean",       "AP mask",         "AP50 mask",     "AP50 box",  "PQ",   "stem p50 mm",
+    "area p50 %", "crops sprayed %", "weeds found %", "false /m2", "ms"};
 
 }  // namespace
 
@@ -82,6 +100,12 @@ std::string to_json(const VisionReport& report) {
                             {"pq", figure(s.pq)},
                             {"stem_p50_mm", figure(s.stem_p50_mm)},
                             {"area_error_p50_pct", figure(s.area_error_p50_pct)},
+                            {"crops_total", s.outcome.crops},
+                            {"crops_sprayed_pct", figure(s.outcome.crops_sprayed_pct())},
+                            {"weeds_total", s.outcome.weeds},
+                            {"weeds_found_pct", figure(s.outcome.weeds_found_pct())},
+                            {"false_per_m2", figure(s.outcome.false_per_m2())},
+                            {"ci95", intervals_of(row.intervals)},
                             {"ms_per_frame", figure(row.ms_per_frame)}});
   }
   json["seed"] = report.seed;
@@ -101,9 +125,11 @@ std::string to_html(const VisionReport& report) {
   ledger::HtmlPage page("Seeing plants",
                         "Furrow " + std::string(version()) + ", detectors on data sets");
   page.section("Figures",
-               "IoU of pixels, summed over the images. Average precision by COCO's procedure over "
-               "crop and weed. Panoptic quality. Errors of stems and areas of plants that were "
-               "found with a mask IoU of at least 0.5. A dash: the data set does not say.");
+               "IoU of pixels, summed over the images; average precision by COCO's procedure over "
+               "crop and weed; panoptic quality; errors of stems and areas of plants that were "
+               "found with a mask IoU of at least 0.5. Crops sprayed: a weed's stem in the crop's "
+               "mask, or a footprint of 25 mm on its stem. Weeds found: a weed's stem within "
+               "15 mm. False: detections on no plant. A dash: the data set does not say.");
   ledger::ReportTable table{.title = "", .header = kHeader, .rows = {}};
   for (const VisionRow& row : report.rows) table.rows.push_back(cells_of(row));
   page.table(table);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "furrow_vision/metrics.hpp"
@@ -10,7 +9,6 @@ namespace {
 
 constexpr std::size_t kMaxDetections = 100;
 constexpr int kRecallPoints = 101;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint8_t kUnmatched = 0, kMatched = 1, kIgnored = 2;
 
 /// IoU, or the share of the detection that lies inside a crowd region.

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace furrow::vision {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 int mask_intersection(const cv::Rect& box_a, const cv::Mat& mask_a, const cv::Rect& box_b,
                       const cv::Mat& mask_b) {
@@ -34,6 +31,16 @@ void SemanticScore::add_vegetation(const cv::Mat& truth, const cv::Mat& predicte
   const cv::Mat a = truth > 0, b = predicted > 0;
   vegetation_.intersection += cv::countNonZero(a & b);
   vegetation_.united += cv::countNonZero(a | b);
+}
+
+SemanticScore& SemanticScore::operator+=(const SemanticScore& other) {
+  const auto add = [](IouCount& to, const IouCount& from) {
+    to.intersection += from.intersection;
+    to.united += from.united;
+  };
+  for (std::size_t i = 0; i < label_.size(); ++i) add(label_[i], other.label_[i]);
+  add(vegetation_, other.vegetation_);
+  return *this;
 }
 
 double SemanticScore::mean_iou() const {

@@ -142,8 +142,7 @@ TEST(VisionEvaluation, LeavesVegetationWithoutAClassOutOfTheClasses) {
   AnnotatedImage truth;
   truth.width_px = 80;
   truth.height_px = 40;
-  truth.instances = {square(10), square(30)};
-  truth.instances[1].crowd = true;
+  truth.instances = {square(10)};
   truth.vegetation = cv::Mat::zeros(40, 80, CV_8U);
   for (const int u : {10, 30, 50}) truth.vegetation(cv::Rect(u, 10, 10, 10)) = 1;
   std::vector<Instance> found;

@@ -15,6 +15,7 @@ namespace furrow::evaluation {
 struct EvaluationSet {
   std::string name;                    ///< "rendered", "cwfid", "carrot_weed", or that of the file
   double resolution_mm_per_px = 1.15;  ///< on the ground
+  bool resolution_known = true;        ///< false: assumed, as nothing says it
   annotation::Dataset dataset;
   std::vector<std::string> notes = {};  ///< skipped annotations and assumptions, a line each
 };

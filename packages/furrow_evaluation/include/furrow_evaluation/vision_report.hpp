@@ -12,6 +12,7 @@ struct VisionRow {
   std::string dataset;
   std::string detector;
   vision::VisionScores scores;
+  vision::ScoreIntervals intervals;  ///< 95 %, by bootstrap over images
   double ms_per_frame = 0.0;
 };
 

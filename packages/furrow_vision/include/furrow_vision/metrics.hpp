@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "furrow_vision/detector.hpp"
 
 namespace furrow::vision {
+
+/// A figure that the data set does not give.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Intersection and union of pixels, summed over images (not a mean of the images' ratios).
 struct IouCount {
@@ -25,6 +29,7 @@ class SemanticScore {
   void add(const cv::Mat& truth, const cv::Mat& predicted);
   /// Vegetation alone: masks, zero or not.
   void add_vegetation(const cv::Mat& truth, const cv::Mat& predicted);
+  SemanticScore& operator+=(const SemanticScore& other);
   [[nodiscard]] const IouCount& soil() const { return label_[0]; }
   [[nodiscard]] const IouCount& weed() const { return label_[1]; }
   [[nodiscard]] const IouCount& crop() const { return label_[2]; }
