@@ -59,6 +59,7 @@ class OneStageDetector::Implementation {
     std::erase_if(plants, [&](const Instance& plant) {
       return plant.area_mm2 < parameters_.decoding.min_plant_area_mm2;
     });
+    apply_plant_context(view, mask, vegetation.colour, model_.classes, parameters_.context, plants);
     return plants;
   }
 
@@ -90,6 +91,7 @@ class OneStageDetector::Implementation {
                 Instance& plant) const {
     plant.stem_px = {(decoded.stem_px.x() + 0.5) / input_per_px.x - 0.5,
                      (decoded.stem_px.y() + 0.5) / input_per_px.y - 0.5};
+    plant.stem_score = decoded.stem_probability;
     constexpr double kWithoutStem = 0.6;
     plant.score = decoded.plant_probability *
                   (kWithoutStem + (1.0 - kWithoutStem) * decoded.stem_probability);
@@ -113,6 +115,7 @@ void OneStageParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1.0},
           cell_cover_min);
+  context.visit(v);
   network.visit(v);
 }
 

@@ -106,6 +106,18 @@ void VegetationParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 20.0},
           soil_deviations);
+  v.visit(
+      {.name = "soil_deviations_dense",
+       .description = "As soil_deviations, where vegetation is not rare: beside many plants the "
+                      "tail of the soil's spread counts little, and leaf edges count more",
+       .min = 0.0,
+       .max = 20.0},
+      soil_deviations_dense);
+  v.visit({.name = "dense_share",
+           .description = "Share of the image from which on vegetation is not rare",
+           .min = 0.0,
+           .max = 1.0},
+          dense_share);
   v.visit({.name = "min_separation",
            .description = "Least difference of the mean index of plants and soil; else soil only",
            .min = 0.0,
@@ -184,6 +196,13 @@ Vegetation segment_vegetation(const cv::Mat& bgr, const VegetationParameters& pa
   result.index = image.index;
   result.otsu = otsu_threshold(image.histogram);
   result.soil_end = soil_end(image.histogram, result.otsu, parameters.soil_deviations);
+  const double certain =
+      part_of(image.histogram, result.threshold_at(parameters.threshold_factor) + 1, 255).count;
+  if (certain >= parameters.dense_share * static_cast<double>(image.index.total())) {
+    result.soil_end =
+        soil_end(image.histogram, result.otsu,
+                 std::min(parameters.soil_deviations, parameters.soil_deviations_dense));
+  }
   result.threshold = result.threshold_at(parameters.threshold_factor);
   const Part soil = part_of(image.histogram, 0, result.threshold);
   const Part plants = part_of(image.histogram, result.threshold + 1, 255);

@@ -23,6 +23,8 @@ struct Instance {
   double score = 0.0;  ///< super-class: probability that this is a plant and not background
   /// Probability of each entry of Detector::classes(), given that it is a plant; sums to 1.
   std::vector<double> class_scores;
+  /// Probability that a stem is seen at stem_px; 0 where the detector does not say.
+  double stem_score = 0.0;
   double crop_probability = 0.0;  ///< sum of class_scores over the crop classes
   cv::Rect box_px;                ///< inside the image
   cv::Mat mask;                   ///< CV_8U, size of box_px; 255 plant, 0 else

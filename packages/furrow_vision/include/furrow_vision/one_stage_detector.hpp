@@ -8,6 +8,7 @@
 #include "furrow_vision/detector.hpp"
 #include "furrow_vision/network_use.hpp"
 #include "furrow_vision/one_stage_decoding.hpp"
+#include "furrow_vision/plant_context.hpp"
 #include "furrow_vision/vegetation_fusion.hpp"
 
 namespace furrow::vision {
@@ -17,6 +18,7 @@ struct OneStageParameters {
   VegetationFusionParameters vegetation;
   OneStageDecodingParameters decoding;
   double cell_cover_min = 0.1;
+  PlantContextParameters context;
   NetworkUse network;
   void visit(ParameterVisitor& v);
 };

@@ -19,6 +19,8 @@ struct VegetationParameters {
   double softening = 300.0;
   double threshold_factor = 0.8;
   double soil_deviations = 4.0;
+  double soil_deviations_dense = 3.0;
+  double dense_share = 0.01;
   double min_separation = 20.0;
   double min_contrast = 1.2;
   std::int64_t median_px = 3;
