@@ -85,7 +85,7 @@ cv::Mat ignored_region(const AnnotatedImage& truth) {
   }
   cv::dilate(region, region, cv::Mat::ones(kSide_px, kSide_px, CV_8U));
   const cv::Rect image(0, 0, truth.width_px, truth.height_px);
-  for (const cv::Rect& box : truth.ignore_boxes_px) region(box & image).setTo(255);
+  for (const cv::Rect& box : truth.ignore_boxes) region(box & image).setTo(255);
   for (const AnnotatedInstance& instance : truth.instances) {
     if (!instance.crowd) region(instance.box_px).setTo(0, instance.mask);
   }

@@ -77,7 +77,7 @@ TEST(FieldOutcome, CountsDetectionsOnNothingOutsideOfIgnoredRegions) {
   AnnotatedInstance crowd = plant({100, 20, 20, 20}, SubClassKind::kWeed);
   crowd.crowd = true;
   truth.instances.push_back(crowd);
-  truth.ignore_boxes_px = {{150, 0, 100, 100}};  // reaches beyond the image
+  truth.ignore_boxes = {{150, 0, 100, 100}};  // reaches beyond the image
   const FieldOutcome outcome = field_outcome(
       truth, {weed_at(25, 25), weed_at(110, 30), weed_at(170, 50), weed_at(60, 80)}, kMmPerPx);
   EXPECT_EQ(outcome.detections_on_nothing, 1);
@@ -88,7 +88,7 @@ TEST(FieldOutcome, CountsDetectionsOnNothingOutsideOfIgnoredRegions) {
 
 TEST(VisionEvaluation, LeavesIgnoredRegionsOutOfAllPixelFigures) {
   AnnotatedImage truth = image_of({plant({20, 20, 10, 10}, SubClassKind::kWeed)});
-  truth.ignore_boxes_px = {{100, 0, 100, 100}};
+  truth.ignore_boxes = {{100, 0, 100, 100}};
   const geometry::PinholeCamera camera({200, 100, 500.0, 500.0, 99.5, 49.5});
   Instance right;
   right.box_px = {20, 20, 10, 10};
