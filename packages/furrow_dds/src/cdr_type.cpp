@@ -73,7 +73,7 @@ CdrType::CdrType(const std::string& type_name) {
 }
 
 bool CdrType::serialize(void* data, SerializedPayload_t* payload) {
-  const auto& message = *static_cast<const WireData*>(data);
+  const auto& message = *static_cast<const CdrSample*>(data);
   auto* out = reinterpret_cast<std::byte*>(payload->data);
   const std::size_t written = message.serialize({out, payload->max_size});
   if (written < kEncapsulationBytes) {
@@ -86,12 +86,12 @@ bool CdrType::serialize(void* data, SerializedPayload_t* payload) {
 
 bool CdrType::deserialize(SerializedPayload_t* payload, void* data) {
   const auto* in = reinterpret_cast<const std::byte*>(payload->data);
-  static_cast<WireData*>(data)->deserialize({in, payload->length});
+  static_cast<CdrSample*>(data)->deserialize({in, payload->length});
   return true;  // what is malformed is counted by the reader; here it would stay in the history
 }
 
 std::function<uint32_t()> CdrType::getSerializedSizeProvider(void* data) {
-  return [data] { return static_cast<std::uint32_t>(static_cast<WireData*>(data)->size()); };
+  return [data] { return static_cast<std::uint32_t>(static_cast<CdrSample*>(data)->size()); };
 }
 
 }  // namespace furrow::dds

@@ -14,16 +14,16 @@
 namespace furrow::dds {
 
 /// What stands behind the void pointers that Fast DDS hands to a CdrType.
-class WireData {
+class CdrSample {
  public:
-  virtual ~WireData() = default;
+  virtual ~CdrSample() = default;
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// Bytes written; 0 when it failed.
   [[nodiscard]] virtual std::size_t serialize(std::span<std::byte> out) const = 0;
   virtual void deserialize(std::span<const std::byte> in) = 0;
 };
 
-class OutgoingMessage final : public WireData {
+class OutgoingMessage final : public CdrSample {
  public:
   OutgoingMessage(const msgs::MessageType& type, const void* message, std::size_t size)
       : type_(type), message_(message), size_(size) {}
@@ -40,7 +40,7 @@ class OutgoingMessage final : public WireData {
 /// Reads into a new message, or, when it is large, into one that it made before, if possible for
 /// the same size, and that nobody holds any more: allocating and clearing a camera image costs as
 /// much as copying it.
-class IncomingMessage final : public WireData {
+class IncomingMessage final : public CdrSample {
  public:
   explicit IncomingMessage(const msgs::MessageType& type) : type_(type) {}
   /// Null when nothing came or it was malformed.
@@ -65,7 +65,7 @@ class IncomingMessage final : public WireData {
   std::array<Kept, kKept> kept_;
 };
 
-class OutgoingBytes final : public WireData {
+class OutgoingBytes final : public CdrSample {
  public:
   explicit OutgoingBytes(std::span<const std::byte> bytes) : bytes_(bytes) {}
   [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
@@ -76,7 +76,7 @@ class OutgoingBytes final : public WireData {
   std::span<const std::byte> bytes_;
 };
 
-class IncomingBytes final : public WireData {
+class IncomingBytes final : public CdrSample {
  public:
   [[nodiscard]] std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
   [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
@@ -88,14 +88,14 @@ class IncomingBytes final : public WireData {
 };
 
 /// A sample that is let go unread.
-class NoData final : public WireData {
+class NoData final : public CdrSample {
  public:
   [[nodiscard]] std::size_t size() const override { return 0; }
   [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
   void deserialize(std::span<const std::byte>) override {}
 };
 
-/// A type that Fast DDS knows by its name only: samples are WireData. Typed and raw endpoints of a
+/// A type that Fast DDS knows by its name only: samples are CdrSample. Typed and raw endpoints of a
 /// topic share it, as a participant takes one implementation for a name.
 class CdrType final : public eprosima::fastdds::dds::TopicDataType {
  public:
@@ -104,8 +104,8 @@ class CdrType final : public eprosima::fastdds::dds::TopicDataType {
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
   std::function<uint32_t()> getSerializedSizeProvider(void* data) override;
-  void* createData() override { return static_cast<WireData*>(new NoData); }
-  void deleteData(void* data) override { delete static_cast<WireData*>(data); }
+  void* createData() override { return static_cast<CdrSample*>(new NoData); }
+  void deleteData(void* data) override { delete static_cast<CdrSample*>(data); }
   bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
   bool is_bounded() const override { return false; }
   bool is_plain() const override { return false; }

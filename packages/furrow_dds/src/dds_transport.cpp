@@ -15,7 +15,7 @@ class TypedHandler final : public SampleHandler {
  public:
   TypedHandler(const msgs::MessageType& type, std::function<void(graph::MessagePtr)> on_message)
       : message_(type), on_message_(std::move(on_message)) {}
-  [[nodiscard]] WireData& data() override { return message_; }
+  [[nodiscard]] CdrSample& data() override { return message_; }
   [[nodiscard]] std::size_t deliver(const SampleInfo&) override {
     graph::MessagePtr message = message_.take();
     if (message == nullptr) {
@@ -34,7 +34,7 @@ class RawHandler final : public SampleHandler {
  public:
   explicit RawHandler(std::function<void(RawMessage)> on_message)
       : on_message_(std::move(on_message)) {}
-  [[nodiscard]] WireData& data() override { return bytes_; }
+  [[nodiscard]] CdrSample& data() override { return bytes_; }
   [[nodiscard]] std::size_t deliver(const SampleInfo& info) override {
     RawMessage message;
     const std::size_t size = bytes_.size();
@@ -51,7 +51,7 @@ class RawHandler final : public SampleHandler {
   std::function<void(RawMessage)> on_message_;
 };
 
-class TypedWriter final : public graph::WireWriter {
+class TypedWriter final : public graph::TransportWriter {
  public:
   TypedWriter(Participant& participant, const std::string& topic, const msgs::MessageType& type,
               const msgs::Qos& qos)
@@ -59,7 +59,7 @@ class TypedWriter final : public graph::WireWriter {
   [[nodiscard]] bool has_readers() const override { return writer_.has_readers(); }
   void write(graph::MessagePtr message) override { writer_.write(std::move(message)); }
   void enqueue(graph::MessagePtr message) override { writer_.enqueue(std::move(message)); }
-  [[nodiscard]] graph::WireCounters counters() const override { return writer_.counters(); }
+  [[nodiscard]] graph::TransportCounters counters() const override { return writer_.counters(); }
 
  private:
   Writer writer_;
@@ -75,7 +75,7 @@ class BytesWriter final : public RawWriter {
   [[nodiscard]] bool write_now(const std::vector<std::byte>& payload) override {
     return writer_.write_now(payload);
   }
-  [[nodiscard]] graph::WireCounters counters() const override { return writer_.counters(); }
+  [[nodiscard]] graph::TransportCounters counters() const override { return writer_.counters(); }
 
  private:
   Writer writer_;
@@ -87,7 +87,7 @@ class ReaderOf final : public Interface {
   ReaderOf(Participant& participant, const std::string& topic, const std::string& type_name,
            const msgs::Qos& qos, std::unique_ptr<SampleHandler> handler)
       : reader_(participant, topic, type_name, qos, std::move(handler)) {}
-  [[nodiscard]] graph::WireCounters counters() const override { return reader_.counters(); }
+  [[nodiscard]] graph::TransportCounters counters() const override { return reader_.counters(); }
   [[nodiscard]] int writers() const override { return reader_.writers(); }
 
  private:
@@ -107,16 +107,16 @@ DdsTransport::DdsTransport(const DdsParameters& parameters)
 
 DdsTransport::~DdsTransport() = default;
 
-std::unique_ptr<graph::WireWriter> DdsTransport::make_writer(const std::string& topic,
-                                                             const msgs::MessageType& type,
-                                                             const msgs::Qos& qos) {
+std::unique_ptr<graph::TransportWriter> DdsTransport::make_writer(const std::string& topic,
+                                                                  const msgs::MessageType& type,
+                                                                  const msgs::Qos& qos) {
   return std::make_unique<TypedWriter>(impl_->participant, topic, type, qos);
 }
 
-std::unique_ptr<graph::WireReader> DdsTransport::make_reader(
+std::unique_ptr<graph::TransportReader> DdsTransport::make_reader(
     const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
     std::function<void(graph::MessagePtr)> on_message) {
-  return std::make_unique<ReaderOf<graph::WireReader>>(
+  return std::make_unique<ReaderOf<graph::TransportReader>>(
       impl_->participant, topic, std::string(type.dds_name), qos,
       std::make_unique<TypedHandler>(type, std::move(on_message)));
 }
@@ -157,7 +157,7 @@ std::uint64_t DdsTransport::discovery_version() const {
   return impl_->participant.discovery().version();
 }
 
-void DdsTransport::on_fault(std::function<void(const WireFault&)> callback) {
+void DdsTransport::on_fault(std::function<void(const TransportFault&)> callback) {
   impl_->participant.set_on_fault(std::move(callback));
 }
 

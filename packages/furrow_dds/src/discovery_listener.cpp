@@ -59,12 +59,13 @@ Guid to_guid(const rtps::GUID_t& guid) {
   return out;
 }
 
-std::string wire_name(const std::string& topic) {
+std::string dds_topic_name(const std::string& topic) {
   return topic.starts_with("//") ? topic.substr(2) : std::string(kTopicPrefix) + topic;
 }
 
-std::string topic_name(const std::string& wire) {
-  return wire.starts_with(kTopicPrefix) ? wire.substr(kTopicPrefix.size()) : "//" + wire;
+std::string topic_name(const std::string& dds_name) {
+  return dds_name.starts_with(kTopicPrefix) ? dds_name.substr(kTopicPrefix.size())
+                                            : "//" + dds_name;
 }
 
 void DiscoveryListener::set_own(const ProcessInfo& own) {
@@ -109,7 +110,7 @@ void DiscoveryListener::update(const ProxyData& data, bool writer, bool removed)
     endpoints_.erase(guid);
   } else if (endpoints_.size() < kMaxEntries || endpoints_.contains(guid)) {
     Endpoint& endpoint = endpoints_[guid];
-    endpoint.wire_name = data.topicName().to_string();
+    endpoint.dds_topic_name = data.topicName().to_string();
     endpoint.writer = writer;
     endpoint.info.guid = guid;
     endpoint.info.process = participant_of(guid);
@@ -147,7 +148,7 @@ DiscoverySnapshot DiscoveryListener::snapshot() const {
       out.processes.push_back(process);
     }
     for (const auto& [guid, endpoint] : endpoints_) {
-      const std::string name = topic_name(endpoint.wire_name);
+      const std::string name = topic_name(endpoint.dds_topic_name);
       TopicInfo& topic = topics[name];
       (endpoint.writer ? topic.writers : topic.readers).push_back(endpoint.info);
       type_names[name].insert(endpoint.info.type_name);

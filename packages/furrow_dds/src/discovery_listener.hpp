@@ -12,8 +12,8 @@ namespace furrow::dds {
 [[nodiscard]] Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);
 
 /// "rt/NAME" and NAME; a name that begins with "//" goes without the prefix.
-[[nodiscard]] std::string wire_name(const std::string& topic);
-[[nodiscard]] std::string topic_name(const std::string& wire);
+[[nodiscard]] std::string dds_topic_name(const std::string& topic);
+[[nodiscard]] std::string topic_name(const std::string& dds_name);
 
 /// Keeps the picture of the domain. Bounded: what would exceed kMaxEntries is left out.
 class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipantListener {
@@ -33,7 +33,7 @@ class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipant
 
  private:
   struct Endpoint {
-    std::string wire_name;
+    std::string dds_topic_name;
     bool writer = false;
     EndpointInfo info;
   };

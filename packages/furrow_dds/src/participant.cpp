@@ -71,7 +71,7 @@ Participant::~Participant() {
 Participant::TopicUse::TopicUse(Participant& participant, const std::string& topic,
                                 const std::string& type_name)
     : participant_(participant) {
-  const std::string name = wire_name(topic);
+  const std::string name = dds_topic_name(topic);
   const std::lock_guard lock(participant_.topics_mutex_);
   if (auto* known = participant_.participant_->lookup_topicdescription(name)) {
     if (known->get_type_name() != type_name) {
@@ -105,12 +105,12 @@ bool Participant::is_own(const eprosima::fastrtps::rtps::InstanceHandle_t& handl
          participant_->guid().guidPrefix;
 }
 
-void Participant::set_on_fault(std::function<void(const WireFault&)> callback) {
+void Participant::set_on_fault(std::function<void(const TransportFault&)> callback) {
   const std::lock_guard lock(fault_mutex_);
   on_fault_ = std::move(callback);
 }
 
-void Participant::report(WireFaultKind kind, const std::string& topic) {
+void Participant::report(TransportFaultKind kind, const std::string& topic) {
   const std::lock_guard lock(fault_mutex_);
   if (on_fault_) {
     on_fault_({kind, topic});

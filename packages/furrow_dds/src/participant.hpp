@@ -59,8 +59,8 @@ class Participant {
   [[nodiscard]] const DiscoveryListener& discovery() const { return discovery_; }
   [[nodiscard]] const DdsParameters& parameters() const { return parameters_; }
 
-  void set_on_fault(std::function<void(const WireFault&)> callback);
-  void report(WireFaultKind kind, const std::string& topic);
+  void set_on_fault(std::function<void(const TransportFault&)> callback);
+  void report(TransportFaultKind kind, const std::string& topic);
 
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);
@@ -82,7 +82,7 @@ class Participant {
   std::map<std::string, int> topic_uses_;
 
   std::mutex fault_mutex_;
-  std::function<void(const WireFault&)> on_fault_;
+  std::function<void(const TransportFault&)> on_fault_;
 
   mutable std::mutex endpoints_mutex_;
   std::vector<Endpoint*> endpoints_;

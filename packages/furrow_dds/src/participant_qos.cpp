@@ -36,15 +36,15 @@ bool has(const std::vector<std::string>& list, const char* entry) {
 
 /// For discovery and all but large data: what is said must arrive even where a process died with
 /// its shared memory open. Ports left at 0 become those of the standard.
-void listen_on_udp(fdds::WireProtocolConfigQos& wire) {
+void listen_on_udp(fdds::WireProtocolConfigQos& protocol) {
   rtps::Locator_t any;
   any.kind = LOCATOR_KIND_UDPv4;
   any.port = 0;
-  wire.default_unicast_locator_list.push_back(any);
-  wire.builtin.metatrafficUnicastLocatorList.push_back(any);
+  protocol.default_unicast_locator_list.push_back(any);
+  protocol.builtin.metatrafficUnicastLocatorList.push_back(any);
   rtps::Locator_t group = any;
   rtps::IPLocator::setIPv4(group, 239, 255, 0, 1);
-  wire.builtin.metatrafficMulticastLocatorList.push_back(group);
+  protocol.builtin.metatrafficMulticastLocatorList.push_back(group);
 }
 
 void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos& qos) {

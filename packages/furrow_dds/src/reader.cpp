@@ -31,7 +31,7 @@ Reader::~Reader() {
   participant_.subscriber().delete_datareader(data_reader_);
 }
 
-graph::WireCounters Reader::counters() const {
+graph::TransportCounters Reader::counters() const {
   return {.messages = messages_, .bytes = bytes_, .dropped = dropped_};
 }
 
@@ -52,7 +52,7 @@ void Reader::take(fdds::DataReader& reader) {
   // Who wrote it is looked at first: what this process wrote itself is not worth deserializing.
   while (reader.get_first_untaken_info(&info) == ReturnCode_t::RETCODE_OK) {
     const bool own = participant_.is_own(info.publication_handle);
-    WireData& data = own ? nothing : handler_->data();
+    CdrSample& data = own ? nothing : handler_->data();
     if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) {
       return;
     }
@@ -113,7 +113,7 @@ void Reader::Listener::on_requested_deadline_missed(
   // Without a writer outside, messages come inside the process, where DDS does not see them.
   if (!closed_ && status.total_count_change > 0 && reader_.writers_ > 0) {
     reader_.deadlines_missed_ += static_cast<std::uint64_t>(status.total_count_change);
-    reader_.participant_.report(WireFaultKind::kDeadlineMissed, reader_.topic_);
+    reader_.participant_.report(TransportFaultKind::kDeadlineMissed, reader_.topic_);
   }
 }
 
@@ -126,9 +126,9 @@ void Reader::Listener::on_liveliness_changed(
   const Guid writer = to_guid(iHandle2GUID(status.last_publication_handle));
   if (status.not_alive_count_change > 0 && reader_.silent_.insert(writer).second) {
     ++reader_.liveliness_losses_;
-    reader_.participant_.report(WireFaultKind::kLivelinessLost, reader_.topic_);
+    reader_.participant_.report(TransportFaultKind::kLivelinessLost, reader_.topic_);
   } else if (status.alive_count_change > 0 && reader_.silent_.erase(writer) > 0) {
-    reader_.participant_.report(WireFaultKind::kLivelinessRegained, reader_.topic_);
+    reader_.participant_.report(TransportFaultKind::kLivelinessRegained, reader_.topic_);
   }
 }
 
@@ -137,7 +137,7 @@ void Reader::Listener::on_requested_incompatible_qos(
   const std::lock_guard lock(mutex_);
   if (!closed_ && status.total_count_change > 0) {
     reader_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
-    reader_.participant_.report(WireFaultKind::kIncompatible, reader_.topic_);
+    reader_.participant_.report(TransportFaultKind::kIncompatible, reader_.topic_);
   }
 }
 

@@ -19,7 +19,7 @@ class SampleHandler {
  public:
   virtual ~SampleHandler() = default;
   /// Where the next sample is read into.
-  [[nodiscard]] virtual WireData& data() = 0;
+  [[nodiscard]] virtual CdrSample& data() = 0;
   /// Hands on what was read; its bytes, or 0 when it was malformed.
   [[nodiscard]] virtual std::size_t deliver(const eprosima::fastdds::dds::SampleInfo& info) = 0;
 };
@@ -31,7 +31,7 @@ class Reader final : public Endpoint {
   ~Reader() override;
 
   [[nodiscard]] int writers() const { return writers_.load(std::memory_order_relaxed); }
-  [[nodiscard]] graph::WireCounters counters() const;
+  [[nodiscard]] graph::TransportCounters counters() const;
   [[nodiscard]] EndpointStatus status() const override;
   [[nodiscard]] bool flush(std::chrono::steady_clock::time_point) override { return true; }
 

@@ -152,7 +152,7 @@ bool SendQueue::wait_idle(std::chrono::steady_clock::time_point deadline) {
   return sender_.idle_.wait_until(lock, deadline, [&] { return !scheduled_; });
 }
 
-graph::WireCounters SendQueue::counters() const {
+graph::TransportCounters SendQueue::counters() const {
   const std::lock_guard lock(sender_.mutex_);
   return counters_;
 }

@@ -19,7 +19,7 @@ namespace furrow::dds {
 class MessageSink {
  public:
   virtual ~MessageSink() = default;
-  /// Bytes of the message on the wire.
+  /// Bytes of the serialized message.
   [[nodiscard]] virtual std::size_t size(const graph::MessagePtr& message) = 0;
   /// May block; false when the message could not be sent.
   [[nodiscard]] virtual bool send(const graph::MessagePtr& message, std::size_t size) = 0;
@@ -81,7 +81,7 @@ class SendQueue {
   void push_quietly(graph::MessagePtr message);
   /// False when something still waits or is being sent at `deadline`.
   [[nodiscard]] bool wait_idle(std::chrono::steady_clock::time_point deadline);
-  [[nodiscard]] graph::WireCounters counters() const;
+  [[nodiscard]] graph::TransportCounters counters() const;
   void count_dropped();
 
  private:
@@ -98,7 +98,7 @@ class SendQueue {
   Sender::Lane lane_ = Sender::kPrompt;
   bool scheduled_ = false;  // in a ready list, or being sent
   bool sending_ = false;
-  graph::WireCounters counters_;
+  graph::TransportCounters counters_;
 };
 
 }  // namespace furrow::dds

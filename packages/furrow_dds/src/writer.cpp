@@ -66,14 +66,14 @@ bool Writer::send(const graph::MessagePtr& message, std::size_t size) {
   }
   if (type_ != nullptr) {
     OutgoingMessage data(*type_, message.get(), size);
-    return writer_->write(static_cast<WireData*>(&data));
+    return writer_->write(static_cast<CdrSample*>(&data));
   }
   return write_now(*static_cast<const std::vector<std::byte>*>(message.get()));
 }
 
 bool Writer::write_now(const std::vector<std::byte>& payload) {
   OutgoingBytes data(payload);
-  return writer_->write(static_cast<WireData*>(&data));
+  return writer_->write(static_cast<CdrSample*>(&data));
 }
 
 EndpointStatus Writer::status() const {
@@ -117,7 +117,7 @@ void Writer::Listener::on_offered_incompatible_qos(
   const std::lock_guard lock(mutex_);
   if (!closed_ && status.total_count_change > 0) {
     writer_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
-    writer_.participant_.report(WireFaultKind::kIncompatible, writer_.topic_);
+    writer_.participant_.report(TransportFaultKind::kIncompatible, writer_.topic_);
   }
 }
 

@@ -23,7 +23,7 @@ class Writer final : public Endpoint, private MessageSink {
   void enqueue(graph::MessagePtr message);
   [[nodiscard]] bool write_now(const std::vector<std::byte>& payload);
   void count_dropped() { queue_->count_dropped(); }
-  [[nodiscard]] graph::WireCounters counters() const { return queue_->counters(); }
+  [[nodiscard]] graph::TransportCounters counters() const { return queue_->counters(); }
 
   [[nodiscard]] EndpointStatus status() const override;
   [[nodiscard]] bool flush(std::chrono::steady_clock::time_point deadline) override;

@@ -22,7 +22,7 @@ const msgs::MessageType& image_type() {
   return msgs::message_type<Image>();
 }
 
-std::vector<std::byte> wire_form(std::size_t pixels, std::uint8_t value) {
+std::vector<std::byte> cdr_form(std::size_t pixels, std::uint8_t value) {
   Image image;
   image.data().assign(pixels, value);
   std::vector<std::byte> bytes(image_type().serialized_size(&image));
@@ -31,7 +31,7 @@ std::vector<std::byte> wire_form(std::size_t pixels, std::uint8_t value) {
 }
 
 ImagePtr receive(IncomingMessage& incoming, std::size_t pixels, std::uint8_t value) {
-  incoming.deserialize(wire_form(pixels, value));
+  incoming.deserialize(cdr_form(pixels, value));
   return std::static_pointer_cast<const Image>(incoming.take());
 }
 
@@ -74,7 +74,7 @@ TEST(IncomingMessage, MoreSizesThanAreKeptAreReadRightToo) {
 
 TEST(IncomingMessage, AMalformedOneIsNoneAndTheNextIsRead) {
   IncomingMessage incoming(image_type());
-  std::vector<std::byte> cut = wire_form(kLarge, 1);
+  std::vector<std::byte> cut = cdr_form(kLarge, 1);
   cut.resize(cut.size() / 2);
   incoming.deserialize(cut);
   EXPECT_EQ(incoming.take(), nullptr);

@@ -69,7 +69,7 @@ class CycloneTest : public ::testing::Test {
     peer_.emplace();
     ASSERT_TRUE(peer_->started());
   }
-  std::unique_ptr<graph::WireWriter> writer(const msgs::Topic& topic) {
+  std::unique_ptr<graph::TransportWriter> writer(const msgs::Topic& topic) {
     auto writer = transport_.make_writer(std::string(topic.name), *topic.type, topic.qos);
     EXPECT_TRUE(eventually([&] { return writer->has_readers() && reader_->writers() == 1; }));
     return writer;
@@ -77,7 +77,7 @@ class CycloneTest : public ::testing::Test {
 
   /// Both sides find each other in their own time, and what is sent between is nobody's: repeats
   /// the message until it is answered.
-  std::optional<Odometry> answer_to(graph::WireWriter& out, const graph::MessagePtr& message,
+  std::optional<Odometry> answer_to(graph::TransportWriter& out, const graph::MessagePtr& message,
                                     const std::string& frame) {
     std::optional<Odometry> found;
     constexpr std::chrono::milliseconds kAgain{100};
@@ -98,7 +98,7 @@ class CycloneTest : public ::testing::Test {
 
   DdsTransport transport_{test_parameters("furrow")};
   Inbox<Odometry> answers_;
-  std::unique_ptr<graph::WireReader> reader_;
+  std::unique_ptr<graph::TransportReader> reader_;
   std::optional<CyclonePeer> peer_;
 };
 

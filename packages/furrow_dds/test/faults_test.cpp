@@ -98,8 +98,8 @@ TEST(Faults, AReaderThatDoesNotTakeHoldsNobodyUp) {
 TEST(Faults, MissedDeadlinesAreCountedAndReported) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
-  Inbox<WireFault> faults;
-  b.on_fault([&](const WireFault& fault) { faults.put(fault); });
+  Inbox<TransportFault> faults;
+  b.on_fault([&](const TransportFault& fault) { faults.put(fault); });
   msgs::Qos qos = msgs::event_qos();
   qos.deadline = Duration::milliseconds(50);
   StringInbox inbox;
@@ -109,7 +109,7 @@ TEST(Faults, MissedDeadlinesAreCountedAndReported) {
   writer->write(make_string("once"));
   ASSERT_TRUE(inbox.wait_for(1));
   ASSERT_TRUE(faults.wait_for(1));
-  EXPECT_EQ(faults.items().front().kind, WireFaultKind::kDeadlineMissed);
+  EXPECT_EQ(faults.items().front().kind, TransportFaultKind::kDeadlineMissed);
   EXPECT_EQ(faults.items().front().topic, "text");
   EXPECT_GE(b.status().front().deadlines_missed, 1U);
   b.on_fault({});
@@ -118,16 +118,16 @@ TEST(Faults, MissedDeadlinesAreCountedAndReported) {
 TEST(Faults, IncompatibleQosIsReportedOnBothSides) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
-  Inbox<WireFault> at_writer;
-  Inbox<WireFault> at_reader;
-  a.on_fault([&](const WireFault& fault) { at_writer.put(fault); });
-  b.on_fault([&](const WireFault& fault) { at_reader.put(fault); });
+  Inbox<TransportFault> at_writer;
+  Inbox<TransportFault> at_reader;
+  a.on_fault([&](const TransportFault& fault) { at_writer.put(fault); });
+  b.on_fault([&](const TransportFault& fault) { at_reader.put(fault); });
   StringInbox inbox;
   const auto reader = b.make_reader("text", string_type(), msgs::latched_qos(), inbox.handler());
   const auto writer = a.make_writer("text", string_type(), msgs::sensor_qos());
   EXPECT_TRUE(at_writer.wait_for(1));
   EXPECT_TRUE(at_reader.wait_for(1));
-  EXPECT_EQ(at_reader.items().front().kind, WireFaultKind::kIncompatible);
+  EXPECT_EQ(at_reader.items().front().kind, TransportFaultKind::kIncompatible);
   EXPECT_EQ(b.status().front().incompatible, 1U);
   EXPECT_FALSE(writer->has_readers());
   a.on_fault({});

@@ -46,14 +46,14 @@ class PeerProcess {
 class Watched : public ::testing::Test {
  protected:
   void SetUp() override {
-    transport_.on_fault([this](const WireFault& fault) { faults_.put(fault.kind); });
+    transport_.on_fault([this](const TransportFault& fault) { faults_.put(fault.kind); });
     reader_ = transport_.make_reader("alive", string_type(), watched_qos(), inbox_.handler());
     peer_.emplace();
     ASSERT_TRUE(peer_->started());
     ASSERT_TRUE(inbox_.wait_for(3));
   }
   void TearDown() override { transport_.on_fault({}); }
-  [[nodiscard]] bool reported(WireFaultKind kind) {
+  [[nodiscard]] bool reported(TransportFaultKind kind) {
     return eventually([&] {
       const auto kinds = faults_.items();
       return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
@@ -61,16 +61,16 @@ class Watched : public ::testing::Test {
   }
 
   DdsTransport transport_{test_parameters("watcher")};
-  Inbox<WireFaultKind> faults_;
+  Inbox<TransportFaultKind> faults_;
   StringInbox inbox_;
-  std::unique_ptr<graph::WireReader> reader_;
+  std::unique_ptr<graph::TransportReader> reader_;
   std::optional<PeerProcess> peer_;
 };
 
 TEST_F(Watched, AKilledProcessIsMissedWithinItsLease) {
   const auto killed = Clock::now();
   peer_->end();
-  ASSERT_TRUE(reported(WireFaultKind::kLivelinessLost));
+  ASSERT_TRUE(reported(TransportFaultKind::kLivelinessLost));
   // The lease, and as much again for a busy machine.
   EXPECT_LT(Clock::now() - killed, 2 * std::chrono::nanoseconds(kWatchedLease.count_ns()));
   EXPECT_EQ(transport_.status().front().liveliness_losses, 1U);
@@ -78,9 +78,9 @@ TEST_F(Watched, AKilledProcessIsMissedWithinItsLease) {
 
 TEST_F(Watched, AStoppedProcessIsMissedAndFoundAgain) {
   peer_->signal(SIGSTOP);
-  ASSERT_TRUE(reported(WireFaultKind::kLivelinessLost));
+  ASSERT_TRUE(reported(TransportFaultKind::kLivelinessLost));
   peer_->signal(SIGCONT);
-  EXPECT_TRUE(reported(WireFaultKind::kLivelinessRegained));
+  EXPECT_TRUE(reported(TransportFaultKind::kLivelinessRegained));
   const std::size_t before = inbox_.size();
   EXPECT_TRUE(inbox_.wait_for(before + 3));
 }

@@ -7,7 +7,7 @@
 namespace furrow::dds {
 namespace {
 
-// As it goes over the wire.
+// In CDR form.
 std::vector<std::byte> cdr_of(const StringMessage& message) {
   std::vector<std::byte> bytes(string_type().serialized_size(&message));
   const auto size = string_type().serialize(&message, bytes);

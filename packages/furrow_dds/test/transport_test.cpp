@@ -47,7 +47,7 @@ TEST_P(RoundTrip, SmallMessagesArriveInOrder) {
   EXPECT_TRUE(a.flush(Duration::seconds(5)));
   EXPECT_EQ(writer->counters().messages, expected.size());
   EXPECT_EQ(reader->counters().messages, expected.size());
-  // The wire pads each to four bytes.
+  // DDS pads each to four bytes.
   EXPECT_GE(reader->counters().bytes, writer->counters().bytes);
   EXPECT_LE(reader->counters().bytes, writer->counters().bytes + 3 * expected.size());
   EXPECT_EQ(reader->counters().dropped, 0U);
@@ -141,7 +141,7 @@ TEST(Transport, ALateJoinerGetsTheLatchedMessage) {
   ASSERT_TRUE(a.flush(Duration::seconds(5)));
   std::vector<std::unique_ptr<StringInbox>> inboxes;
   DdsTransport b(test_parameters("b"));
-  std::vector<std::unique_ptr<graph::WireReader>> readers;
+  std::vector<std::unique_ptr<graph::TransportReader>> readers;
   for (int i = 0; i < 30; ++i) {
     inboxes.push_back(std::make_unique<StringInbox>());
     readers.push_back(

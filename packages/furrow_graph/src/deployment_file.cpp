@@ -3,7 +3,7 @@
 
 #include "furrow_graph/graph_file.hpp"
 #include "furrow_graph/parameter_file.hpp"
-#include "put_over.hpp"
+#include "merge.hpp"
 #include "yaml_source.hpp"
 
 namespace furrow::graph {
@@ -66,7 +66,7 @@ DeploymentSpec load_deployment(const std::filesystem::path& path) {
         if (key == "deployment") {
           deployment.name = source.text(value, key);
         } else if (key == "wire") {
-          deployment.wire = source.parameters(value, key);
+          deployment.transport = source.parameters(value, key);
         } else if (key == "hosts") {
           source.each(value, key,
                       [&](const std::string& name, const YAML::Node&, const YAML::Node& address) {
@@ -102,28 +102,31 @@ void apply_addresses(DeploymentSpec& deployment, const std::vector<std::string>&
   }
 }
 
-void apply_wire_settings(DeploymentSpec& deployment, const std::vector<std::string>& settings) {
+void apply_transport_settings(DeploymentSpec& deployment,
+                              const std::vector<std::string>& settings) {
   for (const std::string& text : settings) {
     const auto equals = text.find('=');
     const SourceLocation where{"--wire " + text, 0};
     if (equals == std::string::npos) throw ConfigError(where, "", "is not KEY=VALUE");
-    put_over(deployment.wire,
-             {text.substr(0, equals), parse_parameter_value(text.substr(equals + 1)), where});
+    merge(deployment.transport,
+          {text.substr(0, equals), parse_parameter_value(text.substr(equals + 1)), where});
   }
 }
 
-std::vector<GivenParameter> wire_of(const DeploymentSpec& deployment, const std::string& host) {
-  std::vector<GivenParameter> wire = deployment.wire;
+std::vector<GivenParameter> transport_parameters(const DeploymentSpec& deployment,
+                                                 const std::string& host) {
+  std::vector<GivenParameter> parameters = deployment.transport;
   const auto own = std::ranges::find(deployment.hosts, host, &HostSpec::name);
-  if (own == deployment.hosts.end()) return wire;
+  if (own == deployment.hosts.end()) return parameters;
   const auto given = [&](const char* name) {
-    return std::ranges::find(deployment.wire, name, &GivenParameter::name);
+    return std::ranges::find(deployment.transport, name, &GivenParameter::name);
   };
-  if (given("interfaces") == deployment.wire.end()) {
-    wire.push_back({"interfaces", std::vector<std::string>{own->address}, deployment.where});
+  if (given("interfaces") == deployment.transport.end()) {
+    parameters.push_back({"interfaces", std::vector<std::string>{own->address}, deployment.where});
   }
   const auto discovery = given("discovery");
-  if (discovery == deployment.wire.end() || given("peers") != deployment.wire.end()) return wire;
+  if (discovery == deployment.transport.end() || given("peers") != deployment.transport.end())
+    return parameters;
   std::vector<std::string> peers;
   if (discovery->value == ParameterValue(std::string("static_peers"))) {
     for (const HostSpec& other : deployment.hosts) {
@@ -132,8 +135,8 @@ std::vector<GivenParameter> wire_of(const DeploymentSpec& deployment, const std:
   } else if (discovery->value == ParameterValue(std::string("discovery_server"))) {
     peers.push_back(deployment.hosts.front().address);
   }
-  if (!peers.empty()) wire.push_back({"peers", std::move(peers), deployment.where});
-  return wire;
+  if (!peers.empty()) parameters.push_back({"peers", std::move(peers), deployment.where});
+  return parameters;
 }
 
 namespace {

@@ -29,7 +29,7 @@ DiagnosticStatus status_of(const std::string& process, const std::string& name,
 
 diagnostic_msgs::msg::DiagnosticArray make_diagnostics(Time now, const std::string& process,
                                                        std::span<const ComponentStatus> components,
-                                                       const Health* wire, bool with_times) {
+                                                       const Health* transport, bool with_times) {
   diagnostic_msgs::msg::DiagnosticArray array;
   array.header().stamp(to_msg(now));
   for (const ComponentStatus& component : components) {
@@ -54,9 +54,9 @@ diagnostic_msgs::msg::DiagnosticArray make_diagnostics(Time now, const std::stri
     }
     array.status().push_back(std::move(status));
   }
-  if (wire != nullptr) {
-    DiagnosticStatus status = status_of(process, "wire", *wire);
-    for (const auto& [counter, count] : wire->counters) {
+  if (transport != nullptr) {
+    DiagnosticStatus status = status_of(process, "transport", *transport);
+    for (const auto& [counter, count] : transport->counters) {
       add(status, "count/" + counter, std::to_string(count));
     }
     array.status().push_back(std::move(status));

@@ -10,10 +10,10 @@
 namespace furrow::graph {
 
 /// The health of a process as ROS 2 tools show it: a status for each component, named
-/// "PROCESS: COMPONENT", and one for the wire, "PROCESS: wire". Figures of the wall clock are left
-/// out on request, so that simulated time gives the same bytes.
+/// "PROCESS: COMPONENT", and one for the transport, "PROCESS: transport". Figures of the wall clock
+/// are left out on request, so that simulated time gives the same bytes.
 [[nodiscard]] diagnostic_msgs::msg::DiagnosticArray make_diagnostics(
     Time now, const std::string& process, std::span<const ComponentStatus> components,
-    const Health* wire, bool with_times);
+    const Health* transport, bool with_times);
 
 }  // namespace furrow::graph

@@ -9,7 +9,7 @@
 
 namespace furrow::graph {
 
-class WaveExchange;
+class StepExchange;
 
 /// What a process knows of the others with which it runs in lock-step.
 struct SharedLockstep {
@@ -21,7 +21,7 @@ struct SharedLockstep {
   };
   SharedLockstep();
   ~SharedLockstep();
-  std::unique_ptr<WaveExchange> exchange;
+  std::unique_ptr<StepExchange> exchange;
   std::vector<Topic> topics;                     ///< as the graph's connections
   std::vector<std::uint32_t> component_of_node;  ///< index in the graph, by node of this process
 };
@@ -32,7 +32,7 @@ class Executor : public NodeHost {
   /// Before run(): messages published by constructors wait for it.
   virtual RunResult run(std::span<const std::unique_ptr<Node>> nodes) = 0;
   /// A message from outside the process, on any thread.
-  virtual void deliver_from_wire(const Route::Reader& reader, MessagePtr message) = 0;
+  virtual void deliver_from_transport(const Route::Reader& reader, MessagePtr message) = 0;
   /// Before run(): called at every second of the clock, while no node's outcome depends on it.
   virtual void every_second(std::function<void(Time)> callback) = 0;
   /// From any thread: ends the run as soon as may be.
@@ -47,8 +47,8 @@ class Executor : public NodeHost {
 
 /// Somebody outside reads the topic, or may come later and read what is latched.
 [[nodiscard]] bool wanted_outside(const Route& route);
-/// Hands a message to the wire where it is wanted.
-void write_to_wire(Route& route, const MessagePtr& message);
+/// Hands a message to the transport where it is wanted.
+void write_to_transport(Route& route, const MessagePtr& message);
 
 /// Reason and failure of the first stop that was asked for. Thread-safe.
 class StopRequest {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "furrow_graph/parameter_file.hpp"
-#include "put_over.hpp"
+#include "merge.hpp"
 #include "yaml_source.hpp"
 
 namespace furrow::graph {
@@ -84,7 +84,7 @@ ComponentSpec read_component(const YamlSource& source, const std::string& name,
   if (spec.priority > 0 && !spec.dedicated_thread) {
     throw ConfigError(spec.where, name + ".priority", "needs thread: dedicated");
   }
-  for (GivenParameter& parameter : over) put_over(spec.parameters, std::move(parameter));
+  for (GivenParameter& parameter : over) merge(spec.parameters, std::move(parameter));
   return spec;
 }
 
@@ -141,7 +141,7 @@ void expand_lists(GraphSpec& graph, const std::map<std::string, std::vector<std:
       ComponentSpec& copy = expanded.emplace_back(spec);
       copy.name = spec.name + "_" + entry;
       copy.for_each.clear();
-      put_over(copy.parameters, {spec.for_each_parameter, entry, spec.where});
+      merge(copy.parameters, {spec.for_each_parameter, entry, spec.where});
     }
   }
   graph.components = std::move(expanded);
@@ -159,10 +159,10 @@ void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings) 
     const GivenParameter parameter{setting.substr(dot + 1, equals - dot - 1),
                                    parse_parameter_value(setting.substr(equals + 1)), where};
     bool found = component == "common";
-    if (found) put_over(graph.common, parameter);
+    if (found) merge(graph.common, parameter);
     for (ComponentSpec& spec : graph.components) {
       if (spec.name != component && spec.group != component) continue;
-      put_over(spec.parameters, parameter);
+      merge(spec.parameters, parameter);
       found = true;
     }
     if (!found) throw ConfigError(where, component, "there is no such component in the graph");

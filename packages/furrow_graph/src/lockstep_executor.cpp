@@ -1,19 +1,19 @@
 #include <algorithm>
 #include <mutex>
 
-#include "crew.hpp"
 #include "executor.hpp"
-#include "wave_exchange.hpp"
+#include "step_exchange.hpp"
+#include "worker_pool.hpp"
 
 namespace furrow::graph {
 namespace {
 
-/// Steps simulated time from one due timer to the next. At an instant the nodes run in waves: those
+/// Steps simulated time from one due timer to the next. At an instant the nodes run in steps: those
 /// with mail or a due timer run side by side, then what they published is delivered in the order of
 /// the graph. So the outcome does not depend on the number of threads.
 class LockstepExecutor final : public Executor {
  public:
-  explicit LockstepExecutor(int threads) : crew_(threads) {}
+  explicit LockstepExecutor(int threads) : workers_(threads) {}
 
   [[nodiscard]] Time now() const override { return now_; }
 
@@ -37,9 +37,9 @@ class LockstepExecutor final : public Executor {
 
   void share(std::unique_ptr<SharedLockstep> shared) override { shared_ = std::move(shared); }
 
-  void deliver_from_wire(const Route::Reader& reader, MessagePtr message) override {
-    const std::lock_guard lock(wire_mutex_);
-    from_wire_.push_back({reader, std::move(message)});
+  void deliver_from_transport(const Route::Reader& reader, MessagePtr message) override {
+    const std::lock_guard lock(transport_mutex_);
+    from_transport_.push_back({reader, std::move(message)});
   }
 
   RunResult run(std::span<const std::unique_ptr<Node>> nodes) override {
@@ -81,30 +81,30 @@ class LockstepExecutor final : public Executor {
     return stop_.result(now_);
   }
 
-  /// With other processes: every wave is exchanged before the next one runs, and all draw the same
+  /// With other processes: every step is exchanged before the next one runs, and all draw the same
   /// conclusions from it.
   RunResult run_shared() {
-    WaveExchange& exchange = *shared_->exchange;
+    StepExchange& exchange = *shared_->exchange;
     std::vector<Time> next_timers(exchange.size(), kNever);
     std::vector<bool> active(exchange.size(), true);
-    std::shared_ptr<Wave> mine = make_wave(constructed_);
+    std::shared_ptr<Step> mine = make_step(constructed_);
     for (std::uint64_t number = 0;; ++number) {
-      const auto waves = exchange.exchange(number, active, std::move(mine));
-      if (!waves.ok()) {
-        stop_.set(waves.error().message, true);
+      const auto steps = exchange.exchange(number, active, std::move(mine));
+      if (!steps.ok()) {
+        stop_.set(steps.error().message, true);
         return stop_.result(now_);
       }
-      if (!deliver_all(*waves)) {
+      if (!deliver_all(*steps)) {
         stop_.set("a message from another process is malformed", true);
         return stop_.result(now_);
       }
-      for (std::size_t i = 0; i < waves->size(); ++i) {
-        const Wave* wave = (*waves)[i].get();
-        if (wave == nullptr) continue;
-        if (wave->stop) return {wave->reason, wave->failed, now_};
-        next_timers[i] = Time::from_nanoseconds(wave->next_timer_ns);
+      for (std::size_t i = 0; i < steps->size(); ++i) {
+        const Step* step = (*steps)[i].get();
+        if (step == nullptr) continue;
+        if (step->stop) return {step->reason, step->failed, now_};
+        next_timers[i] = Time::from_nanoseconds(step->next_timer_ns);
       }
-      active = woken_by(*waves);
+      active = woken_by(*steps);
       if (std::ranges::find(active, true) == active.end()) {
         const Time next = std::ranges::min(next_timers);
         if (next == kNever) return {"nothing is left to do", false, now_};
@@ -112,18 +112,18 @@ class LockstepExecutor final : public Executor {
         for (std::size_t i = 0; i < active.size(); ++i) active[i] = next_timers[i] <= now_;
       }
       const bool mine_runs = active[exchange.own()];
-      if ((number + 1) % WaveExchange::kAllTakePart == 0) active.assign(active.size(), true);
-      if (mine_runs) run_wave();
-      if (active[exchange.own()]) mine = make_wave(collect());
+      if ((number + 1) % StepExchange::kAllTakePart == 0) active.assign(active.size(), true);
+      if (mine_runs) run_step();
+      if (active[exchange.own()]) mine = make_step(collect());
     }
   }
 
   /// The processes that have something to do within the instant.
-  [[nodiscard]] std::vector<bool> woken_by(const WaveExchange::Waves& waves) const {
-    std::vector<bool> woken(waves.size(), false);
-    for (const auto& wave : waves) {
-      if (wave == nullptr) continue;
-      for (const std::uint32_t topic : wave->topics) {
+  [[nodiscard]] std::vector<bool> woken_by(const StepExchange::Steps& steps) const {
+    std::vector<bool> woken(steps.size(), false);
+    for (const auto& step : steps) {
+      if (step == nullptr) continue;
+      for (const std::uint32_t topic : step->topics) {
         if (topic >= shared_->topics.size()) continue;
         const std::vector<bool>& read_by = shared_->topics[topic].read_by;
         for (std::size_t i = 0; i < woken.size(); ++i) woken[i] = woken[i] || read_by[i];
@@ -141,46 +141,46 @@ class LockstepExecutor final : public Executor {
     return published;
   }
 
-  /// This process's part of a wave. Its own messages are kept for deliver_all().
-  [[nodiscard]] std::shared_ptr<Wave> make_wave(std::vector<Published> published) {
-    auto wave = std::make_shared<Wave>();
-    wave->next_timer_ns = next_timer().count_ns();
+  /// This process's part of a step. Its own messages are kept for deliver_all().
+  [[nodiscard]] std::shared_ptr<Step> make_step(std::vector<Published> published) {
+    auto step = std::make_shared<Step>();
+    step->next_timer_ns = next_timer().count_ns();
     // An interruption is told by abort(): the others must not learn of it in one way or the other.
     if (stop_.requested() && !interrupted_) {
       const RunResult result = stop_.result(now_);
-      wave->stop = true;
-      wave->reason = result.reason;
-      wave->failed = result.failed;
+      step->stop = true;
+      step->reason = result.reason;
+      step->failed = result.failed;
     }
     own_.clear();
     for (Published& entry : published) {
       const std::uint32_t index = entry.route->topic_index;
       const SharedLockstep::Topic& topic = shared_->topics[index];
       const std::uint32_t component = shared_->component_of_node[index_of(*entry.from)];
-      write_to_wire(*entry.route, entry.message);
+      write_to_transport(*entry.route, entry.message);
       if (std::ranges::find(topic.read_by, true) != topic.read_by.end()) {
-        wave->topics.push_back(index);
+        step->topics.push_back(index);
       }
       if (topic.read_elsewhere) {
-        WaveMessage& out = wave->messages.emplace_back(WaveMessage{index, component, {}});
+        StepMessage& out = step->messages.emplace_back(StepMessage{index, component, {}});
         out.cdr.resize(topic.type->serialized_size(entry.message.get()));
         if (!topic.type->serialize(entry.message.get(), out.cdr).ok()) out.cdr.clear();
       }
       own_.push_back({component, index, std::move(entry.message)});
     }
-    std::ranges::sort(wave->topics);
-    const auto rest = std::ranges::unique(wave->topics);
-    wave->topics.erase(rest.begin(), rest.end());
-    return wave;
+    std::ranges::sort(step->topics);
+    const auto rest = std::ranges::unique(step->topics);
+    step->topics.erase(rest.begin(), rest.end());
+    return step;
   }
 
-  /// Hands all that was published in a wave to the inputs of this process, in the order of the
+  /// Hands all that was published in a step to the inputs of this process, in the order of the
   /// graph's components; false when something cannot be read.
-  [[nodiscard]] bool deliver_all(const WaveExchange::Waves& waves) {
+  [[nodiscard]] bool deliver_all(const StepExchange::Steps& steps) {
     std::vector<Delivery> deliveries = std::exchange(own_, {});
-    for (std::size_t i = 0; i < waves.size(); ++i) {
-      if (i == shared_->exchange->own() || waves[i] == nullptr) continue;
-      for (const WaveMessage& message : waves[i]->messages) {
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (i == shared_->exchange->own() || steps[i] == nullptr) continue;
+      for (const StepMessage& message : steps[i]->messages) {
         if (message.topic >= shared_->topics.size()) return false;
         const SharedLockstep::Topic& topic = shared_->topics[message.topic];
         if (topic.readers.empty()) continue;
@@ -204,19 +204,19 @@ class LockstepExecutor final : public Executor {
   }
 
   void run_instant() {
-    while (!stop_.requested() && run_wave()) {
+    while (!stop_.requested() && run_step()) {
       for (const std::size_t i : ready_) deliver(outboxes_[i]);
     }
   }
 
   /// False when no node has anything to do.
-  bool run_wave() {
-    take_from_wire();
+  bool run_step() {
+    take_from_transport();
     ready_.clear();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (nodes_[i]->has_messages() || timer_due(*nodes_[i])) ready_.push_back(i);
     }
-    crew_.run(ready_.size(), [this](std::size_t k) { run_node(*nodes_[ready_[k]]); });
+    workers_.parallel_for(ready_.size(), [this](std::size_t k) { run_node(*nodes_[ready_[k]]); });
     return !ready_.empty();
   }
 
@@ -240,18 +240,19 @@ class LockstepExecutor final : public Executor {
       for (const Route::Reader& reader : published.route->readers) {
         reader.node->push(reader.input, published.message);
       }
-      write_to_wire(*published.route, published.message);
+      write_to_transport(*published.route, published.message);
     }
     outbox.clear();
   }
 
-  void take_from_wire() {
-    const std::lock_guard lock(wire_mutex_);
-    for (auto& [reader, message] : from_wire_) reader.node->push(reader.input, std::move(message));
-    from_wire_.clear();
+  void take_from_transport() {
+    const std::lock_guard lock(transport_mutex_);
+    for (auto& [reader, message] : from_transport_)
+      reader.node->push(reader.input, std::move(message));
+    from_transport_.clear();
   }
 
-  // Between waves no node runs: what is seen of them is the same on any number of threads.
+  // Between steps no node runs: what is seen of them is the same on any number of threads.
   void advance_to(Time next) {
     constexpr std::int64_t kSecond_ns = 1'000'000'000;
     const bool crossed = next.count_ns() / kSecond_ns > now_.count_ns() / kSecond_ns;
@@ -267,7 +268,7 @@ class LockstepExecutor final : public Executor {
     return next;
   }
 
-  Crew crew_;
+  WorkerPool workers_;
   StopRequest stop_;
   std::atomic<bool> interrupted_ = false;
   Time now_;
@@ -276,8 +277,8 @@ class LockstepExecutor final : public Executor {
   std::vector<std::vector<Published>> outboxes_;
   std::vector<Published> constructed_;
   std::vector<std::size_t> ready_;
-  std::mutex wire_mutex_;
-  std::vector<std::pair<Route::Reader, MessagePtr>> from_wire_;
+  std::mutex transport_mutex_;
+  std::vector<std::pair<Route::Reader, MessagePtr>> from_transport_;
   std::function<void(Time)> each_second_;
   std::unique_ptr<SharedLockstep> shared_;
   std::vector<Delivery> own_;
@@ -293,12 +294,12 @@ std::unique_ptr<Executor> make_lockstep_executor(int threads) {
 }
 
 bool wanted_outside(const Route& route) {
-  return route.wire != nullptr &&
-         (route.qos.durability == msgs::Durability::kTransientLocal || route.wire->has_readers());
+  return route.writer != nullptr &&
+         (route.qos.durability == msgs::Durability::kTransientLocal || route.writer->has_readers());
 }
 
-void write_to_wire(Route& route, const MessagePtr& message) {
-  if (wanted_outside(route)) route.wire->write(message);
+void write_to_transport(Route& route, const MessagePtr& message) {
+  if (wanted_outside(route)) route.writer->write(message);
 }
 
 void StopRequest::set(std::string_view reason, bool failed) {

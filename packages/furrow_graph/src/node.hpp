@@ -19,7 +19,7 @@ namespace furrow::graph {
 
 class Node;
 
-/// Where a node's messages go: the inputs of this process, and the wire.
+/// Where a node's messages go: the inputs of this process, and the transport.
 struct Route {
   std::string topic;
   msgs::Qos qos;
@@ -28,7 +28,7 @@ struct Route {
     std::size_t input;
   };
   std::vector<Reader> readers;
-  std::unique_ptr<WireWriter> wire;
+  std::unique_ptr<TransportWriter> writer;
   std::uint32_t topic_index = 0;  ///< among the graph's connections
 };
 

@@ -16,7 +16,7 @@ void Outbox::hand_over() {
 
 // With the mutex held all the while: the order within a topic must not depend on who is faster.
 void Outbox::hand_over_locked() {
-  for (auto& [route, message] : messages_) route->wire->enqueue(std::move(message));
+  for (auto& [route, message] : messages_) route->writer->enqueue(std::move(message));
   messages_.clear();
   size_ = 0;
 }

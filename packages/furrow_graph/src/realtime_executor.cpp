@@ -51,7 +51,7 @@ class RealtimeExecutor final : public Executor {
     if (by_pool) {
       outbox_.put(route, std::move(message));
     } else {
-      route.wire->write(std::move(message));
+      route.writer->write(std::move(message));
     }
   }
 
@@ -66,7 +66,7 @@ class RealtimeExecutor final : public Executor {
     for (auto& [node, thread] : dedicated_) thread->wake();
   }
 
-  void deliver_from_wire(const Route::Reader& reader, MessagePtr message) override {
+  void deliver_from_transport(const Route::Reader& reader, MessagePtr message) override {
     Node& node = *reader.node;
     node.push(reader.input, std::move(message));
     if (!running_ || wake_dedicated(node)) return;
@@ -96,7 +96,7 @@ class RealtimeExecutor final : public Executor {
     running_ = true;
     for (auto& [route, message] : constructed_) {
       for (const Route::Reader& reader : route->readers) reader.node->push(reader.input, message);
-      write_to_wire(*route, message);
+      write_to_transport(*route, message);
     }
     constructed_.clear();
     for (const auto& node : nodes) {

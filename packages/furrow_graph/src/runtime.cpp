@@ -8,14 +8,14 @@
 #include "executor.hpp"
 #include "furrow_core/hash.hpp"
 #include "furrow_graph/graph_check.hpp"
-#include "wave_exchange.hpp"
+#include "step_exchange.hpp"
 
 namespace furrow::graph {
 
 namespace {
 
 /// In simulated time the wall clock says nothing of how often messages come.
-msgs::Qos wire_qos(msgs::Qos qos, ClockMode clock) {
+msgs::Qos transport_qos(msgs::Qos qos, ClockMode clock) {
   if (clock == ClockMode::kReal) return qos;
   qos.deadline = Duration();
   qos.liveliness_lease = Duration();
@@ -30,13 +30,13 @@ struct Runtime::Impl {
   std::map<std::string, std::unique_ptr<Route>> routes;
   std::vector<std::unique_ptr<Node>> nodes;
   struct Incoming {
-    std::unique_ptr<WireReader> reader;
+    std::unique_ptr<TransportReader> reader;
     int writers = 0;  ///< as many as there are other processes that publish it
   };
   std::vector<Incoming> incoming;
   std::vector<const Route*> outgoing;  ///< those that other processes of the deployment read
   std::map<std::string, std::string> process_of;
-  std::unique_ptr<WireWriter> diagnostics_writer;
+  std::unique_ptr<TransportWriter> diagnostics_writer;
   std::vector<Route::Reader> diagnostics_readers;
 
   ~Impl() {
@@ -87,8 +87,8 @@ struct Runtime::Impl {
       route->qos = connection.qos;
       route->topic_index = static_cast<std::uint32_t>(i);
       if (transport != nullptr) {
-        route->wire = transport->make_writer(connection.topic, *connection.type,
-                                             wire_qos(connection.qos, options.clock));
+        route->writer = transport->make_writer(connection.topic, *connection.type,
+                                               transport_qos(connection.qos, options.clock));
         if (!elsewhere(connection.readers, options.process).empty())
           outgoing.push_back(route.get());
       }
@@ -112,12 +112,12 @@ struct Runtime::Impl {
       const bool all_local =
           !connection.publishers.empty() &&
           std::ranges::all_of(connection.publishers, [&](const auto& p) { return is_local(p); });
-      // In a shared lock-step the waves carry what the graph itself publishes.
+      // In a shared lock-step the steps carry what the graph itself publishes.
       if (transport == nullptr || all_local || (shared && !connection.publishers.empty())) continue;
       auto reader = transport->make_reader(connection.topic, *connection.type, connection.qos,
                                            [this, readers](MessagePtr message) {
                                              for (const Route::Reader& to : readers)
-                                               executor->deliver_from_wire(to, message);
+                                               executor->deliver_from_transport(to, message);
                                            });
       incoming.push_back(
           {std::move(reader),
@@ -146,15 +146,16 @@ struct Runtime::Impl {
     }
     if (diagnostics_writer == nullptr && diagnostics_readers.empty()) return;
     const bool real = options.clock == ClockMode::kReal;
-    executor->every_second([this, process = options.process, wire_health = options.wire_health,
-                            real](Time now) {
+    executor->every_second([this, process = options.process,
+                            transport_health = options.transport_health, real](Time now) {
       const bool outside = diagnostics_writer != nullptr && diagnostics_writer->has_readers();
       if (!outside && diagnostics_readers.empty()) return;
-      const Health wire = wire_health && real ? wire_health() : Health();
-      const auto message = std::make_shared<const diagnostic_msgs::msg::DiagnosticArray>(
-          make_diagnostics(now, process, status(), wire_health && real ? &wire : nullptr, real));
+      const Health transport = transport_health && real ? transport_health() : Health();
+      const auto message =
+          std::make_shared<const diagnostic_msgs::msg::DiagnosticArray>(make_diagnostics(
+              now, process, status(), transport_health && real ? &transport : nullptr, real));
       for (const Route::Reader& reader : diagnostics_readers) {
-        executor->deliver_from_wire(reader, message);
+        executor->deliver_from_transport(reader, message);
       }
       if (outside) diagnostics_writer->write(message);
     });
@@ -226,7 +227,7 @@ std::unique_ptr<SharedLockstep> Runtime::Impl::make_shared_lockstep(const GraphS
     }
     shared->topics.push_back(std::move(topic));
   }
-  shared->exchange = std::make_unique<WaveExchange>(*options.transport, processes, options.process,
+  shared->exchange = std::make_unique<StepExchange>(*options.transport, processes, options.process,
                                                     digest_of(graph, connections, options));
   return shared;
 }
@@ -276,7 +277,7 @@ bool Runtime::connected() const {
   return std::ranges::all_of(impl_->incoming,
                              [](const auto& in) { return in.reader->writers() >= in.writers; }) &&
          std::ranges::all_of(impl_->outgoing,
-                             [](const Route* route) { return route->wire->has_readers(); });
+                             [](const Route* route) { return route->writer->has_readers(); });
 }
 
 }  // namespace furrow::graph

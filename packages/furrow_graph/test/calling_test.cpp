@@ -18,13 +18,13 @@ using test::spec;
 /// The test itself is the thread that receives.
 class ManualTransport final : public Transport {
  public:
-  std::unique_ptr<WireWriter> make_writer(const std::string&, const msgs::MessageType&,
-                                          const msgs::Qos&) override {
+  std::unique_ptr<TransportWriter> make_writer(const std::string&, const msgs::MessageType&,
+                                               const msgs::Qos&) override {
     return std::make_unique<Writer>();
   }
-  std::unique_ptr<WireReader> make_reader(const std::string& topic, const msgs::MessageType&,
-                                          const msgs::Qos&,
-                                          std::function<void(MessagePtr)> on_message) override {
+  std::unique_ptr<TransportReader> make_reader(
+      const std::string& topic, const msgs::MessageType&, const msgs::Qos&,
+      std::function<void(MessagePtr)> on_message) override {
     readers_[topic] = std::move(on_message);
     return std::make_unique<Reader>();
   }
@@ -35,13 +35,13 @@ class ManualTransport final : public Transport {
   }
 
  private:
-  struct Writer final : WireWriter {
+  struct Writer final : TransportWriter {
     [[nodiscard]] bool has_readers() const override { return false; }
     void write(MessagePtr) override {}
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
   };
-  struct Reader final : WireReader {
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+  struct Reader final : TransportReader {
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
     [[nodiscard]] int writers() const override { return 0; }
   };
   std::map<std::string, std::function<void(MessagePtr)>> readers_;

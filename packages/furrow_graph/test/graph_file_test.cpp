@@ -163,12 +163,12 @@ TEST_F(GraphFile, AddressesOfTheHostsBecomeParametersOfTheWire) {
   const std::string text =
       "hosts: {one: 10.0.0.1, two: 10.0.0.2, three: 10.0.0.3}\n"
       "processes: {p: {host: two, components: \"*\"}}\n";
-  const auto load_with = [&](const std::vector<std::string>& wire) {
+  const auto load_with = [&](const std::vector<std::string>& settings) {
     DeploymentSpec deployment = load_deployment(write(folder_ / "d.yaml", text));
     apply_addresses(deployment, {"three=10.0.0.9"});
-    apply_wire_settings(deployment, wire);
+    apply_transport_settings(deployment, settings);
     std::map<std::string, std::string> values;
-    for (const GivenParameter& parameter : wire_of(deployment, "two")) {
+    for (const GivenParameter& parameter : transport_parameters(deployment, "two")) {
       values[parameter.name] = to_text(parameter.value);
     }
     return values;
@@ -185,7 +185,7 @@ TEST_F(GraphFile, AddressesOfTheHostsBecomeParametersOfTheWire) {
   DeploymentSpec deployment = load_deployment(write(folder_ / "d.yaml", text));
   EXPECT_EQ(error_of(folder_, [&] { apply_addresses(deployment, {"four=10.0.0.4"}); }),
             "--address four=10.0.0.4: is not HOST=ADDRESS with a host of the deployment");
-  EXPECT_EQ(error_of(folder_, [&] { apply_wire_settings(deployment, {"domain_id"}); }),
+  EXPECT_EQ(error_of(folder_, [&] { apply_transport_settings(deployment, {"domain_id"}); }),
             "--wire domain_id: is not KEY=VALUE");
   EXPECT_EQ(error_of(folder_,
                      [&] {

@@ -11,28 +11,28 @@
 namespace furrow::graph {
 namespace {
 
-class NotingWriter final : public WireWriter {
+class NotingWriter final : public TransportWriter {
  public:
   [[nodiscard]] bool has_readers() const override { return true; }
   void write(MessagePtr) override { ADD_FAILURE() << "wakes a thread"; }
   void enqueue(MessagePtr message) override {
     numbers.push_back(*static_cast<const int*>(message.get()));
   }
-  [[nodiscard]] WireCounters counters() const override { return {}; }
+  [[nodiscard]] TransportCounters counters() const override { return {}; }
   std::vector<int> numbers;
 };
 
 class OutboxTest : public testing::Test {
  protected:
   OutboxTest() {
-    auto wire = std::make_unique<NotingWriter>();
-    wire_ = wire.get();
-    route_.wire = std::move(wire);
+    auto writer = std::make_unique<NotingWriter>();
+    writer_ = writer.get();
+    route_.writer = std::move(writer);
   }
   void put(int number) { outbox_.put(route_, std::make_shared<const int>(number)); }
 
   Route route_;
-  NotingWriter* wire_;
+  NotingWriter* writer_;
   Outbox outbox_;
 };
 
@@ -41,21 +41,21 @@ TEST_F(OutboxTest, KeepsMessagesInOrderUntilTheyAreHandedOver) {
   put(1);
   put(2);
   EXPECT_FALSE(outbox_.empty());
-  EXPECT_TRUE(wire_->numbers.empty());
+  EXPECT_TRUE(writer_->numbers.empty());
   outbox_.hand_over();
   EXPECT_TRUE(outbox_.empty());
-  EXPECT_EQ(wire_->numbers, (std::vector{1, 2}));
+  EXPECT_EQ(writer_->numbers, (std::vector{1, 2}));
   outbox_.hand_over();
-  EXPECT_EQ(wire_->numbers.size(), 2U);
+  EXPECT_EQ(writer_->numbers.size(), 2U);
 }
 
 TEST_F(OutboxTest, IsBounded) {
   constexpr int kMany = 1000;
   for (int i = 0; i < kMany; ++i) put(i);
-  EXPECT_GT(wire_->numbers.size(), kMany - 100U);
+  EXPECT_GT(writer_->numbers.size(), kMany - 100U);
   outbox_.hand_over();
-  EXPECT_EQ(wire_->numbers.size(), static_cast<std::size_t>(kMany));
-  EXPECT_TRUE(std::ranges::is_sorted(wire_->numbers));
+  EXPECT_EQ(writer_->numbers.size(), static_cast<std::size_t>(kMany));
+  EXPECT_TRUE(std::ranges::is_sorted(writer_->numbers));
 }
 
 TEST_F(OutboxTest, OrderHoldsWhoeverHandsOver) {
@@ -72,8 +72,8 @@ TEST_F(OutboxTest, OrderHoldsWhoeverHandsOver) {
   stop = true;
   for (std::thread& other : others) other.join();
   outbox_.hand_over();
-  EXPECT_EQ(wire_->numbers.size(), static_cast<std::size_t>(kMany));
-  EXPECT_TRUE(std::ranges::is_sorted(wire_->numbers));
+  EXPECT_EQ(writer_->numbers.size(), static_cast<std::size_t>(kMany));
+  EXPECT_TRUE(std::ranges::is_sorted(writer_->numbers));
 }
 
 }  // namespace

@@ -18,13 +18,13 @@ using test::spec;
 /// Has an outside reader for plans. What is enqueued leaves only when the graph says so.
 class HoldingTransport final : public Transport {
  public:
-  std::unique_ptr<WireWriter> make_writer(const std::string& topic, const msgs::MessageType&,
-                                          const msgs::Qos&) override {
+  std::unique_ptr<TransportWriter> make_writer(const std::string& topic, const msgs::MessageType&,
+                                               const msgs::Qos&) override {
     return std::make_unique<Writer>(*this, topic == "planner/plan");
   }
-  std::unique_ptr<WireReader> make_reader(const std::string&, const msgs::MessageType&,
-                                          const msgs::Qos&,
-                                          std::function<void(MessagePtr)>) override {
+  std::unique_ptr<TransportReader> make_reader(const std::string&, const msgs::MessageType&,
+                                               const msgs::Qos&,
+                                               std::function<void(MessagePtr)>) override {
     return std::make_unique<Reader>();
   }
   [[nodiscard]] bool has_waiting() const override {
@@ -54,7 +54,7 @@ class HoldingTransport final : public Transport {
   }
 
  private:
-  struct Writer final : WireWriter {
+  struct Writer final : TransportWriter {
     Writer(HoldingTransport& holding, bool is_read) : owner(holding), read(is_read) {}
     [[nodiscard]] bool has_readers() const override { return read; }
     void write(MessagePtr) override {
@@ -65,12 +65,12 @@ class HoldingTransport final : public Transport {
       const std::lock_guard lock(owner.mutex_);
       owner.waiting_.push_back(std::move(message));
     }
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
     HoldingTransport& owner;
     const bool read;
   };
-  struct Reader final : WireReader {
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+  struct Reader final : TransportReader {
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
     [[nodiscard]] int writers() const override { return 0; }
   };
 

@@ -5,10 +5,10 @@
 #include <future>
 #include <thread>
 
-#include "../src/wave.hpp"
+#include "../src/step.hpp"
 #include "fixtures.hpp"
 #include "furrow_graph/runtime.hpp"
-#include "memory_wire.hpp"
+#include "memory_network.hpp"
 
 namespace furrow::graph {
 namespace {
@@ -85,17 +85,17 @@ Outcome run_process(const GraphSpec& graph, const std::vector<PlacedProcess>& pr
 
 /// Runs every process; the transcript of all of them together.
 std::string transcript(const std::vector<std::vector<std::string>>& components,
-                       std::uint64_t wire_seed, int threads) {
+                       std::uint64_t network_seed, int threads) {
   const GraphSpec graph = cyclic_graph();
   std::vector<PlacedProcess> processes;
   for (std::size_t i = 0; i < components.size(); ++i) {
     processes.push_back({.name = "p" + std::to_string(i), .components = components[i]});
   }
-  test::MemoryWire wire(wire_seed);
+  test::MemoryNetwork network(network_seed);
   std::vector<std::unique_ptr<Transport>> ends;
   std::vector<std::future<Outcome>> running;
   for (std::size_t i = 0; i < processes.size(); ++i) {
-    ends.push_back(std::make_unique<test::MemoryWire::End>(wire, static_cast<int>(i)));
+    ends.push_back(std::make_unique<test::MemoryNetwork::Endpoint>(network, static_cast<int>(i)));
     running.push_back(std::async(std::launch::async, [&, i, end = ends.back().get()] {
       return run_process(graph, processes, processes[i], end, threads);
     }));
@@ -122,9 +122,9 @@ TEST(SharedLockstep, OneTranscriptWhereverTheComponentsLive) {
       {{"s0"}, {"s1"}, {"s2"}, {"e0"}, {"r"}, {"e1"}, {"sink"}},
   };
   for (std::size_t i = 0; i < placements.size(); ++i) {
-    for (const std::uint64_t wire_seed : {3, 4}) {
-      EXPECT_EQ(transcript(placements[i], wire_seed, 1 + static_cast<int>(i) % 2), alone)
-          << "placement " << i << ", wire " << wire_seed;
+    for (const std::uint64_t network_seed : {3, 4}) {
+      EXPECT_EQ(transcript(placements[i], network_seed, 1 + static_cast<int>(i) % 2), alone)
+          << "placement " << i << ", network " << network_seed;
     }
   }
 }
@@ -135,9 +135,9 @@ std::vector<PlacedProcess> two_processes() {
 }
 
 TEST(SharedLockstep, AProcessThatRunsSomethingElseIsNotedByBoth) {
-  test::MemoryWire wire(1);
-  test::MemoryWire::End first(wire, 0);
-  test::MemoryWire::End second(wire, 1);
+  test::MemoryNetwork network(1);
+  test::MemoryNetwork::Endpoint first(network, 0);
+  test::MemoryNetwork::Endpoint second(network, 1);
   const GraphSpec graph = cyclic_graph();
   const auto processes = two_processes();
   auto other = std::async(std::launch::async, [&] {
@@ -151,9 +151,9 @@ TEST(SharedLockstep, AProcessThatRunsSomethingElseIsNotedByBoth) {
 }
 
 TEST(SharedLockstep, AnInterruptionEndsAllProcesses) {
-  test::MemoryWire wire(1);
-  test::MemoryWire::End first(wire, 0);
-  test::MemoryWire::End second(wire, 1);
+  test::MemoryNetwork network(1);
+  test::MemoryNetwork::Endpoint first(network, 0);
+  test::MemoryNetwork::Endpoint second(network, 1);
   const GraphSpec graph = cyclic_graph();
   const auto processes = two_processes();
   Registry registry = test::standard_registry();
@@ -193,9 +193,9 @@ TEST(SharedLockstep, AnInterruptionEndsAllProcesses) {
 }
 
 TEST(SharedLockstep, AFailureElsewhereIsTheFailureOfAll) {
-  test::MemoryWire wire(1);
-  test::MemoryWire::End first(wire, 0);
-  test::MemoryWire::End second(wire, 1);
+  test::MemoryNetwork network(1);
+  test::MemoryNetwork::Endpoint first(network, 0);
+  test::MemoryNetwork::Endpoint second(network, 1);
   const GraphSpec graph = cyclic_graph();
   const auto processes = two_processes();
   auto other = std::async(std::launch::async, [&] {
@@ -216,8 +216,8 @@ TEST(SharedLockstep, AFailureElsewhereIsTheFailureOfAll) {
   EXPECT_EQ(other.get().reason, mine.result.reason);
 }
 
-Wave sample_wave() {
-  Wave wave{.number = 5,
+Step sample_step() {
+  Step step{.number = 5,
             .run = 6,
             .instance = 7,
             .next_timer_ns = -8,
@@ -226,16 +226,16 @@ Wave sample_wave() {
             .failed = true,
             .reason = "why",
             .topics = {1, 4}};
-  wave.messages = {{1, 2, {std::byte{3}}}, {4, 5, {}}};
-  return wave;
+  step.messages = {{1, 2, {std::byte{3}}}, {4, 5, {}}};
+  return step;
 }
 
-TEST(Wave, IsReadAsItWasWritten) {
-  const Wave wave = sample_wave();
-  std::vector<std::byte> bytes(wave_type().serialized_size(&wave));
-  ASSERT_TRUE(wave_type().serialize(&wave, bytes).ok());
-  Wave copy;
-  ASSERT_TRUE(wave_type().deserialize(bytes, &copy).ok());
+TEST(Step, IsReadAsItWasWritten) {
+  const Step step = sample_step();
+  std::vector<std::byte> bytes(step_type().serialized_size(&step));
+  ASSERT_TRUE(step_type().serialize(&step, bytes).ok());
+  Step copy;
+  ASSERT_TRUE(step_type().deserialize(bytes, &copy).ok());
   EXPECT_EQ(copy.number, 5u);
   EXPECT_EQ(copy.run, 6u);
   EXPECT_EQ(copy.instance, 7u);
@@ -244,27 +244,27 @@ TEST(Wave, IsReadAsItWasWritten) {
   EXPECT_TRUE(copy.stop && copy.failed);
   EXPECT_FALSE(copy.aborted);
   EXPECT_EQ(copy.reason, "why");
-  EXPECT_EQ(copy.topics, wave.topics);
+  EXPECT_EQ(copy.topics, step.topics);
   ASSERT_EQ(copy.messages.size(), 2u);
-  EXPECT_EQ(copy.messages[0].cdr, wave.messages[0].cdr);
+  EXPECT_EQ(copy.messages[0].cdr, step.messages[0].cdr);
   EXPECT_EQ(copy.messages[1].component, 5u);
 }
 
-TEST(Wave, CutShortOrOverfullIsAnError) {
-  const Wave wave = sample_wave();
-  std::vector<std::byte> bytes(wave_type().serialized_size(&wave));
-  ASSERT_TRUE(wave_type().serialize(&wave, bytes).ok());
+TEST(Step, CutShortOrOverfullIsAnError) {
+  const Step step = sample_step();
+  std::vector<std::byte> bytes(step_type().serialized_size(&step));
+  ASSERT_TRUE(step_type().serialize(&step, bytes).ok());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    Wave copy;
-    EXPECT_FALSE(wave_type().deserialize(std::span(bytes).first(size), &copy).ok()) << size;
+    Step copy;
+    EXPECT_FALSE(step_type().deserialize(std::span(bytes).first(size), &copy).ok()) << size;
   }
   // A length that no buffer could hold.
   std::vector<std::byte> huge = bytes;
   std::ranges::fill(huge.begin() + 4, huge.end(), std::byte{0x7F});
-  Wave copy;
-  EXPECT_FALSE(wave_type().deserialize(huge, &copy).ok());
+  Step copy;
+  EXPECT_FALSE(step_type().deserialize(huge, &copy).ok());
   std::vector<std::byte> small(bytes.size() - 1);
-  EXPECT_FALSE(wave_type().serialize(&wave, small).ok());
+  EXPECT_FALSE(step_type().serialize(&step, small).ok());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace {
 
 bool is_of_others(const std::string& name, const diagnostic_msgs::msg::DiagnosticStatus& status,
                   const std::string& own_process) {
-  return status.hardware_id() != own_process || name.ends_with(": wire");
+  return status.hardware_id() != own_process || name.ends_with(": transport");
 }
 
 }  // namespace

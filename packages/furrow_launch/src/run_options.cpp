@@ -19,9 +19,9 @@ bool names_domain(const std::vector<GivenParameter>& parameters) {
 /// The domain of the command line is a setting like the others; that of the environment counts
 /// only where the deployment names none.
 void apply_domain(graph::DeploymentSpec& deployment, const RunOptions& options) {
-  const bool named = names_domain(deployment.wire);
+  const bool named = names_domain(deployment.transport);
   const auto domain = options.domain_id || named ? options.domain_id : domain_from_environment();
-  if (domain) graph::apply_wire_settings(deployment, {"domain_id=" + std::to_string(*domain)});
+  if (domain) graph::apply_transport_settings(deployment, {"domain_id=" + std::to_string(*domain)});
 }
 
 void add_all(std::vector<std::string>& arguments, const std::string& option,
@@ -58,7 +58,7 @@ graph::DeploymentSpec prepare_deployment(const RunOptions& options) {
   auto deployment = graph::load_deployment(find_shipped(options.deploy, "deploy"));
   graph::apply_addresses(deployment, options.addresses);
   apply_domain(deployment, options);
-  graph::apply_wire_settings(deployment, options.dds_settings);
+  graph::apply_transport_settings(deployment, options.dds_settings);
   return deployment;
 }
 

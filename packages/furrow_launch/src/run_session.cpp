@@ -88,7 +88,7 @@ RunSession::RunSession(const RunOptions& options, const std::string& process, bo
 dds::DdsParameters RunSession::dds_parameters() const {
   dds::DdsParameters parameters;
   parameters.process_name = process_.name;
-  ParameterLoader::load(graph::wire_of(deployment_, process_.host), parameters);
+  ParameterLoader::load(graph::transport_parameters(deployment_, process_.host), parameters);
   return parameters;
 }
 
@@ -116,7 +116,7 @@ RunOutcome RunSession::run(SignalPipe& signals, const Callbacks& callbacks) {
     transport = std::make_unique<dds::DdsTransport>(dds_parameters());
     health.emplace(*transport);
     runtime_options.transport = transport.get();
-    runtime_options.wire_health = [&health] { return health->look(); };
+    runtime_options.transport_health = [&health] { return health->look(); };
   }
   graph::Runtime runtime(spec, registry_, runtime_options);
   std::atomic<bool> interrupted = false;

@@ -27,12 +27,12 @@ std::optional<std::int64_t> domain_from_environment() {
 dds::DdsParameters transport_parameters(const TransportOptions& options,
                                         const std::string& process_name) {
   graph::DeploymentSpec deployment;
-  graph::apply_wire_settings(deployment, options.settings);
+  graph::apply_transport_settings(deployment, options.settings);
   dds::DdsParameters parameters;
   parameters.domain_id =
       options.domain_id ? *options.domain_id : domain_from_environment().value_or(0);
   parameters.process_name = process_name;
-  ParameterLoader::load(deployment.wire, parameters);
+  ParameterLoader::load(deployment.transport, parameters);
   return parameters;
 }
 

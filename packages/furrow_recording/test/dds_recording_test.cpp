@@ -65,7 +65,7 @@ class TextReader {
  private:
   mutable std::mutex mutex_;
   Lines got_;
-  std::unique_ptr<graph::WireReader> reader_;
+  std::unique_ptr<graph::TransportReader> reader_;
 };
 
 class DdsRecording : public testing::Test {

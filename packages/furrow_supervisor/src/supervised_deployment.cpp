@@ -56,7 +56,7 @@ SupervisedDeployment::SupervisedDeployment(launch::RunOptions options, const std
   deployment_ = launch::prepare_deployment(options_);
   const auto placed = graph::place_components(prepared.spec, deployment_);
   host_ = pick_host(deployment_, host);
-  ParameterLoader::load(graph::wire_of(deployment_, host_), dds_);
+  ParameterLoader::load(graph::transport_parameters(deployment_, host_), dds_);
   for (const graph::PlacedProcess& process : placed) {
     if (process.host != host_) continue;
     processes_.push_back({.name = process.name,

@@ -12,14 +12,14 @@
 
 namespace furrow::dds {
 
-enum class WireFaultKind {
+enum class TransportFaultKind {
   kDeadlineMissed,      ///< a reader waited longer than its topic's deadline
   kLivelinessLost,      ///< a matched writer outside this process fell silent
   kLivelinessRegained,  ///< and is back
   kIncompatible,        ///< an endpoint of the same topic and type was refused for its QoS
 };
-struct WireFault {
-  WireFaultKind kind = WireFaultKind::kDeadlineMissed;
+struct TransportFault {
+  TransportFaultKind kind = TransportFaultKind::kDeadlineMissed;
   std::string topic;
 };
 
@@ -28,13 +28,13 @@ struct EndpointStatus {
   std::string topic;
   bool writer = false;
   int peers = 0;  ///< matched endpoints outside this process
-  graph::WireCounters counters;
+  graph::TransportCounters counters;
   std::uint64_t deadlines_missed = 0;
   std::uint64_t liveliness_losses = 0;
   std::uint64_t incompatible = 0;
 };
 
-/// One participant of a DDS domain: how a process reaches others. Topics are "rt/NAME" on the wire,
+/// One participant of a DDS domain: how a process reaches others. Topics are "rt/NAME" in DDS,
 /// with ROS 2's type names, so that ROS 2 and other DDS programs take part.
 ///
 /// Writers send from two threads of the transport, one for topics with large messages, so that an
@@ -51,17 +51,17 @@ class DdsTransport final : public graph::Transport {
   explicit DdsTransport(const DdsParameters& parameters);
   ~DdsTransport() override;
 
-  [[nodiscard]] std::unique_ptr<graph::WireWriter> make_writer(const std::string& topic,
-                                                               const msgs::MessageType& type,
-                                                               const msgs::Qos& qos) override;
-  [[nodiscard]] std::unique_ptr<graph::WireReader> make_reader(
+  [[nodiscard]] std::unique_ptr<graph::TransportWriter> make_writer(const std::string& topic,
+                                                                    const msgs::MessageType& type,
+                                                                    const msgs::Qos& qos) override;
+  [[nodiscard]] std::unique_ptr<graph::TransportReader> make_reader(
       const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
       std::function<void(graph::MessagePtr)> on_message) override;
   [[nodiscard]] bool has_waiting() const override;
   void send_one() override;
   void wake_senders() override;
 
-  /// `type_name` as on the wire, e.g. "sensor_msgs::msg::dds_::Image_". Topics are named as in
+  /// `type_name` as in DDS, e.g. "sensor_msgs::msg::dds_::Image_". Topics are named as in
   /// DiscoverySnapshot. Throws ConfigError.
   [[nodiscard]] std::unique_ptr<RawWriter> make_raw_writer(const std::string& topic,
                                                            const std::string& type_name,
@@ -77,7 +77,7 @@ class DdsTransport final : public graph::Transport {
   [[nodiscard]] std::uint64_t discovery_version() const;
 
   /// Called on the transport's thread and must only enqueue. Empty: no more calls.
-  void on_fault(std::function<void(const WireFault&)> callback);
+  void on_fault(std::function<void(const TransportFault&)> callback);
   /// Every endpoint that is there now, in the order they were made.
   [[nodiscard]] std::vector<EndpointStatus> status() const;
 

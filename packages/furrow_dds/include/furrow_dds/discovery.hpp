@@ -10,7 +10,7 @@
 
 namespace furrow::dds {
 
-/// A participant's or endpoint's identity on the wire (RTPS GUID: 12 bytes prefix, 4 entity).
+/// A participant's or endpoint's identity in DDS (RTPS GUID: 12 bytes prefix, 4 entity).
 struct Guid {
   std::array<std::uint8_t, 16> bytes{};
   auto operator<=>(const Guid&) const = default;
@@ -32,7 +32,7 @@ struct EndpointInfo {
   bool own = false;
   bool keyed = false;  ///< made for a type with keys; RawReader cannot read those
   std::string type_name;
-  /// `depth` does not go over the wire and is 0.
+  /// `depth` is not announced by DDS and is 0.
   msgs::Qos qos;
 };
 

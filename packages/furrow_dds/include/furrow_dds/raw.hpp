@@ -27,12 +27,12 @@ using RawPayload = std::shared_ptr<const std::vector<std::byte>>;
 class RawReader {
  public:
   virtual ~RawReader() = default;
-  [[nodiscard]] virtual graph::WireCounters counters() const = 0;
+  [[nodiscard]] virtual graph::TransportCounters counters() const = 0;
   /// Writers outside this process that are matched now.
   [[nodiscard]] virtual int writers() const = 0;
 };
 
-/// Writes any topic, for players. As graph::WireWriter, with bytes in place of messages.
+/// Writes any topic, for players. As graph::TransportWriter, with bytes in place of messages.
 class RawWriter {
  public:
   virtual ~RawWriter() = default;
@@ -44,7 +44,7 @@ class RawWriter {
   /// measuring. False when it was refused. Not for use beside write(): they may overtake each
   /// other.
   [[nodiscard]] virtual bool write_now(const std::vector<std::byte>& payload) = 0;
-  [[nodiscard]] virtual graph::WireCounters counters() const = 0;
+  [[nodiscard]] virtual graph::TransportCounters counters() const = 0;
 };
 
 }  // namespace furrow::dds

@@ -24,7 +24,7 @@ class Output {
  public:
   using Message = typename T::Message;
 
-  /// Hands the message to every input of this process without a copy, and to the wire when
+  /// Hands the message to every input of this process without a copy, and to the transport when
   /// somebody outside reads it. From then on nobody may change it. Call it from the component's
   /// callbacks or constructor only.
   void publish(std::shared_ptr<const Message> message) const { send_(std::move(message)); }

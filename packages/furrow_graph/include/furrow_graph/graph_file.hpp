@@ -97,7 +97,7 @@ struct DeploymentSpec {
   SourceLocation where;
   std::vector<HostSpec> hosts;  ///< empty: one host
   std::vector<ProcessSpec> processes;
-  std::vector<GivenParameter> wire;
+  std::vector<GivenParameter> transport;
 };
 
 [[nodiscard]] DeploymentSpec load_deployment(const std::filesystem::path& path);
@@ -105,13 +105,13 @@ struct DeploymentSpec {
 /// Puts "HOST=ADDRESS" over the addresses of the file. Throws ConfigError.
 void apply_addresses(DeploymentSpec& deployment, const std::vector<std::string>& addresses);
 /// Puts "KEY=VALUE" over the parameters of the transport. Throws ConfigError.
-void apply_wire_settings(DeploymentSpec& deployment, const std::vector<std::string>& settings);
+void apply_transport_settings(DeploymentSpec& deployment, const std::vector<std::string>& settings);
 
 /// The transport's parameters on a host. Where the deployment has hosts, what is not given follows
 /// from their addresses: `interfaces` is the host's own; `peers` are all others with the discovery
 /// "static_peers", and the first host with "discovery_server".
-[[nodiscard]] std::vector<GivenParameter> wire_of(const DeploymentSpec& deployment,
-                                                  const std::string& host);
+[[nodiscard]] std::vector<GivenParameter> transport_parameters(const DeploymentSpec& deployment,
+                                                               const std::string& host);
 
 /// A process with its components, in the order of the graph.
 struct PlacedProcess {

@@ -23,11 +23,11 @@ struct RuntimeOptions {
   ClockMode clock = ClockMode::kReal;
   int threads = 2;
   std::uint64_t seed = 1;
-  std::vector<std::string> components;        ///< of this process; empty: all
-  Transport* transport = nullptr;             ///< none: nothing leaves the process
-  std::string process;                        ///< this one's name
-  std::vector<PlacedProcess> processes = {};  ///< of the whole deployment; empty: only this one
-  std::function<Health()> wire_health = {};   ///< for the diagnostics; called once a second
+  std::vector<std::string> components;            ///< of this process; empty: all
+  Transport* transport = nullptr;                 ///< none: nothing leaves the process
+  std::string process;                            ///< this one's name
+  std::vector<PlacedProcess> processes = {};      ///< of the whole deployment; empty: only this one
+  std::function<Health()> transport_health = {};  ///< for the diagnostics; called once a second
 };
 
 struct InputStatus {

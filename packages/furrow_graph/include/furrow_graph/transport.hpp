@@ -14,17 +14,18 @@ namespace furrow::graph {
 
 using MessagePtr = std::shared_ptr<const void>;
 
-/// What goes over the wire of one endpoint since it was made.
-struct WireCounters {
+/// What goes through one endpoint of the transport since it was made.
+struct TransportCounters {
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t dropped = 0;  ///< left out by us: queue full, malformed, or the wire refused it
+  std::uint64_t dropped =
+      0;  ///< left out by us: queue full, malformed, or the transport refused it
 };
 
 /// Sends one topic to other processes.
-class WireWriter {
+class TransportWriter {
  public:
-  virtual ~WireWriter() = default;
+  virtual ~TransportWriter() = default;
   /// True while a reader outside this process is matched. Cheap: asked at every publication.
   [[nodiscard]] virtual bool has_readers() const = 0;
   /// Hands the message over; serialized and sent by another thread, from a bounded queue whose
@@ -32,28 +33,28 @@ class WireWriter {
   virtual void write(MessagePtr message) = 0;
   /// As write(), but no thread is woken: Transport::send_one() or wake_senders() must follow.
   virtual void enqueue(MessagePtr message) { write(std::move(message)); }
-  [[nodiscard]] virtual WireCounters counters() const = 0;
+  [[nodiscard]] virtual TransportCounters counters() const = 0;
 };
 
 /// Receives one topic from other processes; what this process publishes itself is left out.
-class WireReader {
+class TransportReader {
  public:
-  virtual ~WireReader() = default;
-  [[nodiscard]] virtual WireCounters counters() const = 0;
+  virtual ~TransportReader() = default;
+  [[nodiscard]] virtual TransportCounters counters() const = 0;
   /// Writers outside this process that are matched now.
   [[nodiscard]] virtual int writers() const = 0;
 };
 
-/// The middleware as the graph sees it. Topics are named without the wire's prefix.
+/// The middleware as the graph sees it. Topics are named without the transport's prefix.
 class Transport {
  public:
   virtual ~Transport() = default;
   /// Errors (a refused QoS, no memory) throw ConfigError: endpoints are made at construction only.
-  [[nodiscard]] virtual std::unique_ptr<WireWriter> make_writer(const std::string& topic,
-                                                                const msgs::MessageType& type,
-                                                                const msgs::Qos& qos) = 0;
+  [[nodiscard]] virtual std::unique_ptr<TransportWriter> make_writer(const std::string& topic,
+                                                                     const msgs::MessageType& type,
+                                                                     const msgs::Qos& qos) = 0;
   /// `on_message` is called on the transport's thread and must not hold it up.
-  [[nodiscard]] virtual std::unique_ptr<WireReader> make_reader(
+  [[nodiscard]] virtual std::unique_ptr<TransportReader> make_reader(
       const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
       std::function<void(MessagePtr)> on_message) = 0;
 

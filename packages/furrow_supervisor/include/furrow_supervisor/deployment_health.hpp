@@ -39,8 +39,8 @@ class DeploymentHealth {
   std::set<std::string> cut_off_;               // names of tools that are safe for a lost peer
   std::vector<std::string> changes_;
   std::unique_ptr<dds::DdsTransport> transport_;
-  std::unique_ptr<graph::WireWriter> reset_;
-  std::unique_ptr<graph::WireReader> reader_;
+  std::unique_ptr<graph::TransportWriter> reset_;
+  std::unique_ptr<graph::TransportReader> reader_;
 };
 
 }  // namespace furrow::supervisor

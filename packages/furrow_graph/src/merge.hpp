@@ -9,7 +9,7 @@
 namespace furrow::graph {
 
 /// Adds a parameter, or replaces the one of its name.
-inline void put_over(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
+inline void merge(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
   const auto it = std::ranges::find(parameters, parameter.name, &GivenParameter::name);
   if (it == parameters.end()) {
     parameters.push_back(std::move(parameter));

@@ -16,13 +16,13 @@
 
 namespace furrow::graph::test {
 
-/// A wire in memory: messages go through their CDR form and a thread of the wire. Messages of
+/// A network in memory: messages go through their CDR form and a thread of the network. Messages of
 /// different writers overtake each other, as `seed` will have it; those of one writer do not. Late
 /// readers get what latched writers kept.
-class MemoryWire {
+class MemoryNetwork {
  public:
-  explicit MemoryWire(std::uint64_t seed) : random_(seed), thread_([this] { carry(); }) {}
-  ~MemoryWire() {
+  explicit MemoryNetwork(std::uint64_t seed) : random_(seed), thread_([this] { carry(); }) {}
+  ~MemoryNetwork() {
     {
       const std::lock_guard lock(mutex_);
       quit_ = true;
@@ -32,32 +32,32 @@ class MemoryWire {
   }
 
   /// One process's end.
-  class End final : public Transport {
+  class Endpoint final : public Transport {
    public:
-    End(MemoryWire& wire, int process) : wire_(wire), process_(process) {}
-    [[nodiscard]] std::unique_ptr<WireWriter> make_writer(const std::string& topic,
-                                                          const msgs::MessageType& type,
-                                                          const msgs::Qos& qos) override {
-      return std::make_unique<Writer>(wire_, process_, topic, type, qos);
+    Endpoint(MemoryNetwork& network, int process) : network_(network), process_(process) {}
+    [[nodiscard]] std::unique_ptr<TransportWriter> make_writer(const std::string& topic,
+                                                               const msgs::MessageType& type,
+                                                               const msgs::Qos& qos) override {
+      return std::make_unique<Writer>(network_, process_, topic, type, qos);
     }
-    [[nodiscard]] std::unique_ptr<WireReader> make_reader(
+    [[nodiscard]] std::unique_ptr<TransportReader> make_reader(
         const std::string& topic, const msgs::MessageType& type, const msgs::Qos& /*qos*/,
         std::function<void(MessagePtr)> on_message) override {
-      return std::make_unique<Reader>(wire_, process_, topic, type, std::move(on_message));
+      return std::make_unique<Reader>(network_, process_, topic, type, std::move(on_message));
     }
 
    private:
-    MemoryWire& wire_;
+    MemoryNetwork& network_;
     int process_;
   };
 
  private:
   using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 
-  struct Reader final : WireReader {
-    Reader(MemoryWire& wire, int in_process, std::string name, const msgs::MessageType& of_type,
-           std::function<void(MessagePtr)> call)
-        : owner(wire),
+  struct Reader final : TransportReader {
+    Reader(MemoryNetwork& network, int in_process, std::string name,
+           const msgs::MessageType& of_type, std::function<void(MessagePtr)> call)
+        : owner(network),
           process(in_process),
           topic(std::move(name)),
           type(of_type),
@@ -76,7 +76,7 @@ class MemoryWire {
       std::erase_if(owner.on_the_way_, [this](const auto& e) { return e.first.second == this; });
       owner.idle_.wait(lock, [this] { return owner.calling_ != this; });
     }
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
     [[nodiscard]] int writers() const override {
       const std::lock_guard lock(owner.mutex_);
       int count = 0;
@@ -85,17 +85,17 @@ class MemoryWire {
       }
       return count;
     }
-    MemoryWire& owner;
+    MemoryNetwork& owner;
     int process;
     std::string topic;
     const msgs::MessageType& type;
     std::function<void(MessagePtr)> on_message;
   };
 
-  struct Writer final : WireWriter {
-    Writer(MemoryWire& wire, int in_process, std::string name, const msgs::MessageType& of_type,
-           const msgs::Qos& of_qos)
-        : owner(wire), process(in_process), topic(std::move(name)), type(of_type), qos(of_qos) {
+  struct Writer final : TransportWriter {
+    Writer(MemoryNetwork& network, int in_process, std::string name,
+           const msgs::MessageType& of_type, const msgs::Qos& of_qos)
+        : owner(network), process(in_process), topic(std::move(name)), type(of_type), qos(of_qos) {
       const std::lock_guard lock(owner.mutex_);
       owner.kept_[this];
     }
@@ -127,8 +127,8 @@ class MemoryWire {
       }
       owner.wake_.notify_all();
     }
-    [[nodiscard]] WireCounters counters() const override { return {}; }
-    MemoryWire& owner;
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
+    MemoryNetwork& owner;
     int process;
     std::string topic;
     const msgs::MessageType& type;

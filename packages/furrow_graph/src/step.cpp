@@ -1,4 +1,4 @@
-#include "wave.hpp"
+#include "step.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -94,41 +94,41 @@ class CdrReader {
   bool ok_ = true;
 };
 
-void write(const Wave& wave, CdrWriter& out) {
-  out.number(wave.number);
-  out.number(wave.run);
-  out.number(wave.instance);
-  out.number(wave.next_timer_ns);
-  out.text(wave.process);
-  out.flag(wave.stop);
-  out.flag(wave.failed);
-  out.flag(wave.aborted);
-  out.text(wave.reason);
-  out.number(static_cast<std::uint32_t>(wave.topics.size()));
-  for (const std::uint32_t topic : wave.topics) out.number(topic);
-  out.number(static_cast<std::uint32_t>(wave.messages.size()));
-  for (const WaveMessage& message : wave.messages) {
+void write(const Step& step, CdrWriter& out) {
+  out.number(step.number);
+  out.number(step.run);
+  out.number(step.instance);
+  out.number(step.next_timer_ns);
+  out.text(step.process);
+  out.flag(step.stop);
+  out.flag(step.failed);
+  out.flag(step.aborted);
+  out.text(step.reason);
+  out.number(static_cast<std::uint32_t>(step.topics.size()));
+  for (const std::uint32_t topic : step.topics) out.number(topic);
+  out.number(static_cast<std::uint32_t>(step.messages.size()));
+  for (const StepMessage& message : step.messages) {
     out.number(message.topic);
     out.number(message.component);
     out.bytes(message.cdr);
   }
 }
 
-bool read(CdrReader& in, Wave& wave) {
-  wave.number = in.number<std::uint64_t>();
-  wave.run = in.number<std::uint64_t>();
-  wave.instance = in.number<std::uint64_t>();
-  wave.next_timer_ns = in.number<std::int64_t>();
-  wave.process = in.text();
-  wave.stop = in.flag();
-  wave.failed = in.flag();
-  wave.aborted = in.flag();
-  wave.reason = in.text();
-  wave.topics.resize(in.length(sizeof(std::uint32_t)));
-  for (std::uint32_t& topic : wave.topics) topic = in.number<std::uint32_t>();
+bool read(CdrReader& in, Step& step) {
+  step.number = in.number<std::uint64_t>();
+  step.run = in.number<std::uint64_t>();
+  step.instance = in.number<std::uint64_t>();
+  step.next_timer_ns = in.number<std::int64_t>();
+  step.process = in.text();
+  step.stop = in.flag();
+  step.failed = in.flag();
+  step.aborted = in.flag();
+  step.reason = in.text();
+  step.topics.resize(in.length(sizeof(std::uint32_t)));
+  for (std::uint32_t& topic : step.topics) topic = in.number<std::uint32_t>();
   constexpr std::size_t kSmallestMessage = 3 * sizeof(std::uint32_t);
-  wave.messages.resize(in.length(kSmallestMessage));
-  for (WaveMessage& message : wave.messages) {
+  step.messages.resize(in.length(kSmallestMessage));
+  for (StepMessage& message : step.messages) {
     message.topic = in.number<std::uint32_t>();
     message.component = in.number<std::uint32_t>();
     message.cdr = in.bytes();
@@ -138,13 +138,13 @@ bool read(CdrReader& in, Wave& wave) {
 
 constexpr std::string_view kIdl = R"(module furrow_graph { module msg {
 
-@final struct WaveMessage {
+@final struct StepMessage {
   unsigned long topic;
   unsigned long component;
   sequence<octet> cdr;
 };
 
-@final struct Wave {
+@final struct Step {
   unsigned long long number;
   unsigned long long run;
   unsigned long long instance;
@@ -155,7 +155,7 @@ constexpr std::string_view kIdl = R"(module furrow_graph { module msg {
   boolean aborted;
   string reason;
   sequence<unsigned long> topics;
-  sequence<furrow_graph::msg::WaveMessage> messages;
+  sequence<furrow_graph::msg::StepMessage> messages;
 };
 
 }; };
@@ -163,30 +163,30 @@ constexpr std::string_view kIdl = R"(module furrow_graph { module msg {
 
 }  // namespace
 
-const msgs::MessageType& wave_type() {
+const msgs::MessageType& step_type() {
   static const msgs::MessageType type = {
-      .dds_name = "furrow_graph::msg::dds_::Wave_",
-      .ros_name = "furrow_graph/msg/Wave",
+      .dds_name = "furrow_graph::msg::dds_::Step_",
+      .ros_name = "furrow_graph/msg/Step",
       .idl = kIdl,
-      .create = []() -> std::shared_ptr<void> { return std::make_shared<Wave>(); },
+      .create = []() -> std::shared_ptr<void> { return std::make_shared<Step>(); },
       .serialized_size =
           [](const void* message) {
             CdrWriter count;
-            write(*static_cast<const Wave*>(message), count);
+            write(*static_cast<const Step*>(message), count);
             return kEncapsulation + count.size();
           },
       .serialize = [](const void* message, std::span<std::byte> buffer) -> Result<std::size_t> {
-        const Wave& wave = *static_cast<const Wave*>(message);
+        const Step& step = *static_cast<const Step*>(message);
         CdrWriter count;
-        write(wave, count);
+        write(step, count);
         const std::size_t size = kEncapsulation + count.size();
         if (buffer.size() < size) {
-          return Error{ErrorCode::kOutOfRange, "the buffer is smaller than the wave"};
+          return Error{ErrorCode::kOutOfRange, "the buffer is smaller than the step"};
         }
         std::ranges::fill(buffer.first(kEncapsulation), std::byte{0});
         buffer[1] = kLittleEndian;
         CdrWriter out(buffer.subspan(kEncapsulation));
-        write(wave, out);
+        write(step, out);
         return size;
       },
       .deserialize = [](std::span<const std::byte> buffer, void* message) -> Status {
@@ -194,7 +194,7 @@ const msgs::MessageType& wave_type() {
           return Error{ErrorCode::kParse, "malformed CDR: not little-endian"};
         }
         CdrReader in(buffer.subspan(kEncapsulation));
-        if (!read(in, *static_cast<Wave*>(message))) {
+        if (!read(in, *static_cast<Step*>(message))) {
           return Error{ErrorCode::kParse, "malformed CDR: cut short"};
         }
         return {};

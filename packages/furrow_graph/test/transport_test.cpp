@@ -13,26 +13,26 @@ using test::spec;
 
 class NotingTransport final : public Transport {
  public:
-  struct Writer final : WireWriter {
+  struct Writer final : TransportWriter {
     Writer(NotingTransport& noting, std::string name) : owner(noting), topic(std::move(name)) {}
     [[nodiscard]] bool has_readers() const override { return owner.outside_readers; }
     void write(MessagePtr message) override { owner.written[topic].push_back(std::move(message)); }
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
     NotingTransport& owner;
     std::string topic;
   };
-  struct Reader final : WireReader {
-    [[nodiscard]] WireCounters counters() const override { return {}; }
+  struct Reader final : TransportReader {
+    [[nodiscard]] TransportCounters counters() const override { return {}; }
     [[nodiscard]] int writers() const override { return 0; }
   };
 
-  std::unique_ptr<WireWriter> make_writer(const std::string& topic, const msgs::MessageType&,
-                                          const msgs::Qos&) override {
+  std::unique_ptr<TransportWriter> make_writer(const std::string& topic, const msgs::MessageType&,
+                                               const msgs::Qos&) override {
     return std::make_unique<Writer>(*this, topic);
   }
-  std::unique_ptr<WireReader> make_reader(const std::string& topic, const msgs::MessageType&,
-                                          const msgs::Qos&,
-                                          std::function<void(MessagePtr)> on_message) override {
+  std::unique_ptr<TransportReader> make_reader(
+      const std::string& topic, const msgs::MessageType&, const msgs::Qos&,
+      std::function<void(MessagePtr)> on_message) override {
     readers[topic] = std::move(on_message);
     return std::make_unique<Reader>();
   }
@@ -63,14 +63,14 @@ void run_three_plans(NotingTransport& transport, std::vector<std::string> compon
   runtime.run();
 }
 
-TEST(Wire, NothingIsWrittenWithoutAnOutsideReader) {
+TEST(Transport, NothingIsWrittenWithoutAnOutsideReader) {
   NotingTransport transport;
   run_three_plans(transport, {});
   EXPECT_TRUE(transport.written.empty());
   EXPECT_TRUE(transport.readers.empty());  // every topic is published inside
 }
 
-TEST(Wire, AnOutsideReaderGetsWhatIsPublished) {
+TEST(Transport, AnOutsideReaderGetsWhatIsPublished) {
   NotingTransport transport;
   transport.outside_readers = true;
   run_three_plans(transport, {});
@@ -78,7 +78,7 @@ TEST(Wire, AnOutsideReaderGetsWhatIsPublished) {
   EXPECT_EQ(transport.written["planner/plan"].size(), 3u);
 }
 
-TEST(Wire, WhatAnotherProcessPublishesIsRead) {
+TEST(Transport, WhatAnotherProcessPublishesIsRead) {
   NotingTransport transport;
   run_three_plans(transport, {"r", "sink"});
   ASSERT_EQ(transport.readers.size(), 1u);
@@ -100,7 +100,7 @@ std::vector<std::vector<std::byte>> diagnostics(int threads) {
                    .threads = threads,
                    .transport = &transport,
                    .process = "p",
-                   .wire_health = [] { return Health(); }});
+                   .transport_health = [] { return Health(); }});
   runtime.run();
   std::vector<std::vector<std::byte>> forms;
   const msgs::MessageType& type = *msgs::topics::Diagnostics::topic().type;
@@ -111,14 +111,14 @@ std::vector<std::vector<std::byte>> diagnostics(int threads) {
   return forms;
 }
 
-TEST(Wire, HealthIsPublishedEverySecondWithoutFiguresOfTheWallClock) {
+TEST(Transport, HealthIsPublishedEverySecondWithoutFiguresOfTheWallClock) {
   const auto forms = diagnostics(1);
   ASSERT_EQ(forms.size(), 2u);
   EXPECT_EQ(forms, diagnostics(3));
   diagnostic_msgs::msg::DiagnosticArray array;
   ASSERT_TRUE(msgs::topics::Diagnostics::topic().type->deserialize(forms[0], &array).ok());
   EXPECT_EQ(array.header().stamp().sec(), 1);
-  // A status for each component; none for the wire, whose figures are not of simulated time.
+  // A status for each component; none for the transport, whose figures are not of simulated time.
   ASSERT_EQ(array.status().size(), 3u);
   const auto& sink = array.status()[2];
   EXPECT_EQ(sink.name(), "p: sink");

@@ -9,14 +9,14 @@
 
 namespace furrow::graph {
 
-/// Calls `work(i)` for every i of a range, on this thread and some others, and returns when all are
-/// done.
-class Crew {
+/// A fixed pool of threads. parallel_for() calls `work(i)` for every i below `count`, on the calling
+/// thread and the workers, and returns when all calls have returned. Call from one thread only.
+class WorkerPool {
  public:
-  explicit Crew(int threads) {
+  explicit WorkerPool(int threads) {
     for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
   }
-  ~Crew() {
+  ~WorkerPool() {
     {
       const std::lock_guard lock(mutex_);
       quit_ = true;
@@ -25,7 +25,7 @@ class Crew {
     for (std::thread& helper : helpers_) helper.join();
   }
 
-  void run(std::size_t count, const std::function<void(std::size_t)>& work) {
+  void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work) {
     if (count <= 1 || helpers_.empty()) {
       for (std::size_t i = 0; i < count; ++i) work(i);
       return;

@@ -12,24 +12,24 @@
 
 #include "furrow_core/result.hpp"
 #include "furrow_graph/transport.hpp"
-#include "wave.hpp"
+#include "step.hpp"
 
 namespace furrow::graph {
 
-/// Carries the waves of a lock-step among the processes of a deployment. Every process reads every
-/// wave of every other; who takes part in a wave is known to all beforehand.
-class WaveExchange {
+/// Carries the steps of a lock-step among the processes of a deployment. Every process reads every
+/// step of every other; who takes part in a step is known to all beforehand.
+class StepExchange {
  public:
-  using Waves = std::vector<std::shared_ptr<const Wave>>;
+  using Steps = std::vector<std::shared_ptr<const Step>>;
 
-  /// All processes take part in a wave whose number is a multiple of this, so that none is further
-  /// ahead of another than the wire keeps.
+  /// All processes take part in a step whose number is a multiple of this, so that none is further
+  /// ahead of another than the transport keeps.
   static constexpr std::uint64_t kAllTakePart = 16;
 
   /// `processes` are all, in the same order everywhere; `run` is the same in all.
-  WaveExchange(Transport& transport, const std::vector<std::string>& processes,
+  StepExchange(Transport& transport, const std::vector<std::string>& processes,
                const std::string& own, std::uint64_t run);
-  ~WaveExchange();
+  ~StepExchange();
 
   [[nodiscard]] std::size_t own() const { return own_; }
   [[nodiscard]] std::size_t size() const { return peers_.size(); }
@@ -37,8 +37,8 @@ class WaveExchange {
   /// Sends this process's part, when it has one, and waits for that of every other process that is
   /// active: the parts by process, null where there is none. kUnavailable when a process is gone,
   /// never came, was started twice or runs something else, or when the wait was ended.
-  [[nodiscard]] Result<Waves> exchange(std::uint64_t number, const std::vector<bool>& active,
-                                       std::shared_ptr<Wave> mine);
+  [[nodiscard]] Result<Steps> exchange(std::uint64_t number, const std::vector<bool>& active,
+                                       std::shared_ptr<Step> mine);
 
   /// Ends the wait, and tells the others that this process leaves. From any thread.
   void abort(const std::string& reason);
@@ -47,20 +47,20 @@ class WaveExchange {
   struct Peer {
     std::string name;
     std::optional<std::uint64_t> instance;
-    std::deque<std::shared_ptr<const Wave>> waiting;
+    std::deque<std::shared_ptr<const Step>> waiting;
   };
 
-  void take(const std::shared_ptr<const Wave>& wave);
+  void take(const std::shared_ptr<const Step>& step);
   void fail(const std::string& reason);
   [[nodiscard]] std::string missing(std::uint64_t number, const std::vector<bool>& active) const;
   [[nodiscard]] bool some_process_is_gone(bool waiting_for_start);
-  void send(std::shared_ptr<Wave> wave);
+  void send(std::shared_ptr<Step> step);
 
   const std::uint64_t run_;
   const std::uint64_t instance_;
   std::size_t own_ = 0;
-  std::unique_ptr<WireWriter> writer_;
-  std::unique_ptr<WireReader> reader_;
+  std::unique_ptr<TransportWriter> writer_;
+  std::unique_ptr<TransportReader> reader_;
 
   std::mutex mutex_;  // of what follows
   std::condition_variable arrived_;
