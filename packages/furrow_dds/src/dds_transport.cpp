@@ -58,7 +58,6 @@ class TypedWriter final : public graph::TransportWriter {
       : writer_(participant, topic, std::string(type.dds_name), &type, qos) {}
   [[nodiscard]] bool has_readers() const override { return writer_.has_readers(); }
   void write(graph::MessagePtr message) override { writer_.write(std::move(message)); }
-  void enqueue(graph::MessagePtr message) override { writer_.enqueue(std::move(message)); }
   [[nodiscard]] graph::TransportCounters counters() const override { return writer_.counters(); }
 
  private:
@@ -119,21 +118,6 @@ std::unique_ptr<graph::TransportReader> DdsTransport::make_reader(
   return std::make_unique<ReaderOf<graph::TransportReader>>(
       impl_->participant, topic, std::string(type.dds_name), qos,
       std::make_unique<TypedHandler>(type, std::move(on_message)));
-}
-
-bool DdsTransport::has_waiting() const {
-  return impl_->participant.sender().has_waiting();
-}
-
-void DdsTransport::send_one() {
-  impl_->participant.sender().send_one();
-}
-
-void DdsTransport::wake_senders() {
-  // Of the readers inside: they wake within some ten microseconds, more than half of which a thread
-  // that sends costs them when it is woken together with them.
-  constexpr std::chrono::microseconds kHeadStart{100};
-  impl_->participant.sender().wake_in(kHeadStart);
 }
 
 std::unique_ptr<RawWriter> DdsTransport::make_raw_writer(const std::string& topic,

@@ -69,7 +69,7 @@ std::string topic_name(const std::string& dds_name) {
 }
 
 void DiscoveryListener::set_own(const ProcessInfo& own) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   own_ = own.guid;
   processes_[own.guid] = own;
   ++version_;
@@ -78,7 +78,7 @@ void DiscoveryListener::set_own(const ProcessInfo& own) {
 void DiscoveryListener::on_participant_discovery(fdds::DomainParticipant*,
                                                  rtps::ParticipantDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.m_guid);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (guid == own_) {
     return;
   }
@@ -105,7 +105,7 @@ void DiscoveryListener::on_participant_discovery(fdds::DomainParticipant*,
 template <class ProxyData>
 void DiscoveryListener::update(const ProxyData& data, bool writer, bool removed) {
   const Guid guid = to_guid(data.guid());
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (removed) {
     endpoints_.erase(guid);
   } else if (endpoints_.size() < kMaxEntries || endpoints_.contains(guid)) {
@@ -133,7 +133,7 @@ void DiscoveryListener::on_publisher_discovery(fdds::DomainParticipant*,
 }
 
 std::uint64_t DiscoveryListener::version() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return version_;
 }
 
@@ -142,7 +142,7 @@ DiscoverySnapshot DiscoveryListener::snapshot() const {
   std::map<std::string, TopicInfo> topics;
   std::map<std::string, std::set<std::string>> type_names;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     out.version = version_;
     for (const auto& [guid, process] : processes_) {
       out.processes.push_back(process);

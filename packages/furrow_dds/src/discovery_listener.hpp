@@ -2,9 +2,9 @@
 
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
-#include <mutex>
 #include <string>
 
+#include "furrow_core/mutex.hpp"
 #include "furrow_dds/discovery.hpp"
 
 namespace furrow::dds {
@@ -40,11 +40,11 @@ class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipant
   template <class ProxyData>
   void update(const ProxyData& data, bool writer, bool removed);
 
-  mutable std::mutex mutex_;
-  std::uint64_t version_ = 0;
-  Guid own_;
-  std::map<Guid, ProcessInfo> processes_;
-  std::map<Guid, Endpoint> endpoints_;
+  mutable Mutex mutex_;
+  std::uint64_t version_ FURROW_GUARDED_BY(mutex_) = 0;
+  Guid own_ FURROW_GUARDED_BY(mutex_);
+  std::map<Guid, ProcessInfo> processes_ FURROW_GUARDED_BY(mutex_);
+  std::map<Guid, Endpoint> endpoints_ FURROW_GUARDED_BY(mutex_);
 };
 
 }  // namespace furrow::dds

@@ -14,7 +14,7 @@
 
 #include "discovery_listener.hpp"
 #include "furrow_dds/dds_transport.hpp"
-#include "send_queue.hpp"
+#include "sender.hpp"
 
 namespace furrow::dds {
 

@@ -82,12 +82,12 @@ void Reader::count_gap(const fdds::SampleInfo& info) {
 }
 
 void Reader::Listener::close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   closed_ = true;
 }
 
 void Reader::Listener::on_data_available(fdds::DataReader* reader) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!closed_) {
     reader_.take(*reader);
   }
@@ -95,7 +95,7 @@ void Reader::Listener::on_data_available(fdds::DataReader* reader) {
 
 void Reader::Listener::on_subscription_matched(fdds::DataReader*,
                                                const fdds::SubscriptionMatchedStatus& status) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (closed_ || reader_.participant_.is_own(status.last_publication_handle)) {
     return;
   }
@@ -109,7 +109,7 @@ void Reader::Listener::on_subscription_matched(fdds::DataReader*,
 
 void Reader::Listener::on_requested_deadline_missed(
     fdds::DataReader*, const eprosima::fastrtps::RequestedDeadlineMissedStatus& status) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   // Without a writer outside, messages come inside the process, where DDS does not see them.
   if (!closed_ && status.total_count_change > 0 && reader_.writers_ > 0) {
     reader_.deadlines_missed_ += static_cast<std::uint64_t>(status.total_count_change);
@@ -119,7 +119,7 @@ void Reader::Listener::on_requested_deadline_missed(
 
 void Reader::Listener::on_liveliness_changed(
     fdds::DataReader*, const eprosima::fastrtps::LivelinessChangedStatus& status) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (closed_ || reader_.participant_.is_own(status.last_publication_handle)) {
     return;
   }
@@ -134,7 +134,7 @@ void Reader::Listener::on_liveliness_changed(
 
 void Reader::Listener::on_requested_incompatible_qos(
     fdds::DataReader*, const fdds::RequestedIncompatibleQosStatus& status) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!closed_ && status.total_count_change > 0) {
     reader_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
     reader_.participant_.report(TransportFaultKind::kIncompatible, reader_.topic_);

@@ -6,7 +6,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <set>
 
 #include "cdr_type.hpp"
@@ -56,8 +55,8 @@ class Reader final : public Endpoint {
 
    private:
     Reader& reader_;
-    std::mutex mutex_;
-    bool closed_ = false;
+    Mutex mutex_;
+    bool closed_ FURROW_GUARDED_BY(mutex_) = false;
   };
 
   void take(eprosima::fastdds::dds::DataReader& reader);

@@ -1,17 +1,12 @@
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <mutex>
-#include <thread>
-#include <vector>
 
-#include "alarm.hpp"
+#include "furrow_core/mutex.hpp"
 #include "furrow_graph/transport.hpp"
+#include "sender.hpp"
 
 namespace furrow::dds {
 
@@ -25,80 +20,40 @@ class MessageSink {
   [[nodiscard]] virtual bool send(const graph::MessagePtr& message, std::size_t size) = 0;
 };
 
-class SendQueue;
-
-/// Two threads that send what waits in queues, one message of each queue in turn; others may help.
-/// A queue starts with the first thread and stays with the second from its first message above the
-/// threshold on; it is never with both, so that its order holds.
-class Sender {
- public:
-  explicit Sender(std::size_t bulk_threshold_bytes);
-  /// @pre No queue is left.
-  ~Sender();
-  Sender(const Sender&) = delete;
-  Sender& operator=(const Sender&) = delete;
-
-  /// A message waits that no thread has begun to send.
-  [[nodiscard]] bool has_waiting() const { return waiting_ > 0; }
-  /// Sends one on the thread that calls, where one waits.
-  void send_one();
-  /// Has the threads of this object send what waits, when `delay` has passed.
-  void wake_in(std::chrono::nanoseconds delay);
-
- private:
-  friend class SendQueue;
-  enum Lane : std::size_t { kPrompt, kBulk, kLanes };
-
-  void run(Lane lane);
-  // With mutex_ held, which send_first_of() gives back while it sends. It returns true when it left
-  // the message to the other thread.
-  void schedule(SendQueue& queue);
-  void ring(std::chrono::nanoseconds delay);
-  bool send_first_of(Lane lane, std::unique_lock<std::mutex>& lock);
-
-  const std::size_t bulk_threshold_bytes_;
-  std::mutex mutex_;
-  std::array<Alarm, kLanes> work_;
-  std::array<bool, kLanes> rung_{};  ///< and not yet heard
-  std::condition_variable idle_;
-  std::array<std::deque<SendQueue*>, kLanes> ready_;
-  std::atomic<std::size_t> waiting_ = 0;  ///< queues in ready_
-  bool stop_ = false;
-  std::array<std::thread, kLanes> threads_;
-};
-
-/// The messages of one writer that wait; the oldest is dropped when `depth` are waiting.
+/// The messages of one writer that wait to be sent. A full queue drops its oldest message, counted.
+/// Thread-safe.
 class SendQueue {
  public:
+  /// The sender and the sink must outlive the queue; `depth` is at least 1.
   SendQueue(Sender& sender, MessageSink& sink, std::size_t depth);
-  /// Drops what still waits and returns when nothing is being sent.
+  /// Drops the waiting messages and returns when none is being sent.
   ~SendQueue();
   SendQueue(const SendQueue&) = delete;
   SendQueue& operator=(const SendQueue&) = delete;
 
+  /// Wakes the sender. Never blocks.
   void push(graph::MessagePtr message);
-  /// No thread is woken: Sender::send_one() or wake_in() must follow.
-  void push_quietly(graph::MessagePtr message);
-  /// False when something still waits or is being sent at `deadline`.
+  /// False if a message still waits or is being sent at `deadline`.
   [[nodiscard]] bool wait_idle(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] graph::TransportCounters counters() const;
   void count_dropped();
 
  private:
-  friend class Sender;
-  [[nodiscard]] graph::MessagePtr pop();
+  friend class SendThread;
+  /// Sends the oldest message. Returns the thread that must serve the queue next; null: none waits.
+  [[nodiscard]] SendThread* send_oldest();
 
   Sender& sender_;
   MessageSink& sink_;
-  // All below are guarded by sender_.mutex_.
-  std::vector<graph::MessagePtr> ring_;
-  std::size_t first_ = 0;
-  std::size_t count_ = 0;
-  graph::MessagePtr held_;  // handed from the first thread to the second
-  Sender::Lane lane_ = Sender::kPrompt;
-  bool scheduled_ = false;  // in a ready list, or being sent
-  bool sending_ = false;
-  graph::TransportCounters counters_;
+  const std::size_t depth_;
+  mutable Mutex mutex_;
+  ConditionVariable idle_;
+  std::deque<graph::MessagePtr> waiting_ FURROW_GUARDED_BY(mutex_);
+  /// The first large message, on its way from the prompt thread to the bulk thread.
+  graph::MessagePtr moved_ FURROW_GUARDED_BY(mutex_);
+  SendThread* thread_ FURROW_GUARDED_BY(mutex_);      ///< the prompt or the bulk thread
+  bool scheduled_ FURROW_GUARDED_BY(mutex_) = false;  ///< with the thread, or being sent
+  graph::TransportCounters counters_ FURROW_GUARDED_BY(mutex_);
 };
 
 }  // namespace furrow::dds

@@ -40,19 +40,11 @@ Writer::~Writer() {
 }
 
 void Writer::write(graph::MessagePtr message) {
-  if (takes(message)) queue_->push(std::move(message));
-}
-
-void Writer::enqueue(graph::MessagePtr message) {
-  if (takes(message)) queue_->push_quietly(std::move(message));
-}
-
-bool Writer::takes(const graph::MessagePtr& message) {
   if (message == nullptr) {
-    queue_->count_dropped();
-    return false;
+    count_dropped();
+  } else if (latched_ || has_readers()) {
+    queue_->push(std::move(message));
   }
-  return latched_ || has_readers();
 }
 
 std::size_t Writer::size(const graph::MessagePtr& message) {
@@ -100,13 +92,13 @@ bool Writer::flush(std::chrono::steady_clock::time_point deadline) {
 }
 
 void Writer::Listener::close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   closed_ = true;
 }
 
 void Writer::Listener::on_publication_matched(fdds::DataWriter*,
                                               const fdds::PublicationMatchedStatus& status) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!closed_ && !writer_.participant_.is_own(status.last_subscription_handle)) {
     writer_.readers_ += status.current_count_change;
   }
@@ -114,7 +106,7 @@ void Writer::Listener::on_publication_matched(fdds::DataWriter*,
 
 void Writer::Listener::on_offered_incompatible_qos(
     fdds::DataWriter*, const fdds::OfferedIncompatibleQosStatus& status) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!closed_ && status.total_count_change > 0) {
     writer_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
     writer_.participant_.report(TransportFaultKind::kIncompatible, writer_.topic_);

@@ -3,10 +3,10 @@
 #include <atomic>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
-#include <mutex>
 
 #include "cdr_type.hpp"
 #include "participant.hpp"
+#include "send_queue.hpp"
 
 namespace furrow::dds {
 
@@ -19,8 +19,6 @@ class Writer final : public Endpoint, private MessageSink {
 
   [[nodiscard]] bool has_readers() const { return readers_.load(std::memory_order_relaxed) > 0; }
   void write(graph::MessagePtr message);
-  /// No thread is woken for it: Sender::send_one() or wake_in() must follow.
-  void enqueue(graph::MessagePtr message);
   [[nodiscard]] bool write_now(const std::vector<std::byte>& payload);
   void count_dropped() { queue_->count_dropped(); }
   [[nodiscard]] graph::TransportCounters counters() const { return queue_->counters(); }
@@ -42,11 +40,10 @@ class Writer final : public Endpoint, private MessageSink {
 
    private:
     Writer& writer_;
-    std::mutex mutex_;
-    bool closed_ = false;
+    Mutex mutex_;
+    bool closed_ FURROW_GUARDED_BY(mutex_) = false;
   };
 
-  [[nodiscard]] bool takes(const graph::MessagePtr& message);
   [[nodiscard]] std::size_t size(const graph::MessagePtr& message) override;
   [[nodiscard]] bool send(const graph::MessagePtr& message, std::size_t size) override;
 

@@ -24,7 +24,7 @@ MessagePtr packet(int number, std::size_t size = 1) {
   return std::make_shared<Packet>(Packet{number, size});
 }
 
-/// Notes what is sent; may be closed, so that send() waits.
+/// Records the sent packets. While the gate is closed, send() waits.
 class GatedSink final : public MessageSink {
  public:
   std::size_t size(const MessagePtr& message) override { return get(message).size; }
@@ -62,16 +62,11 @@ class GatedSink final : public MessageSink {
   std::vector<int> sent_;
 };
 
-/// From 0 on.
+/// 0, 1, ... below `count`.
 std::vector<int> numbers(std::size_t count) {
   std::vector<int> all(count);
   std::iota(all.begin(), all.end(), 0);
   return all;
-}
-
-/// Every seventh is large.
-MessagePtr mixed_packet(int number) {
-  return packet(number, number % 7 == 3 ? 2 * kThreshold : 1);
 }
 
 bool idle(SendQueue& queue) {
@@ -93,7 +88,7 @@ TEST(SendQueue, SendsInOrderAndCounts) {
   EXPECT_EQ(queue.counters().dropped, 0U);
 }
 
-TEST(SendQueue, DropsTheOldestWhenFull) {
+TEST(SendQueue, DropsTheOldestMessageWhenFull) {
   Sender sender(kThreshold);
   GatedSink sink;
   sink.set_open(false);
@@ -110,7 +105,7 @@ TEST(SendQueue, DropsTheOldestWhenFull) {
   EXPECT_EQ(queue.counters().messages, 4U);
 }
 
-TEST(SendQueue, LargeMessagesDoNotHoldUpSmallOnesOfAnotherTopic) {
+TEST(SendQueue, ALargeMessageDoesNotDelayAnotherTopic) {
   Sender sender(kThreshold);
   GatedSink images;
   GatedSink commands;
@@ -127,70 +122,19 @@ TEST(SendQueue, LargeMessagesDoNotHoldUpSmallOnesOfAnotherTopic) {
   EXPECT_TRUE(idle(image_queue));
 }
 
-TEST(SendQueue, KeepsTheOrderOfATopicWithSmallAndLargeMessages) {
+TEST(SendQueue, KeepsTheOrderOfSmallAndLargeMessages) {
   Sender sender(kThreshold);
   GatedSink sink;
   SendQueue queue(sender, sink, 300);
   const std::vector<int> expected = numbers(300);
   for (const int number : expected) {
-    queue.push(mixed_packet(number));
+    queue.push(packet(number, number % 7 == 3 ? 2 * kThreshold : 1));
   }
   ASSERT_TRUE(idle(queue));
   EXPECT_EQ(sink.sent(), expected);
 }
 
-TEST(SendQueue, AnotherThreadMaySendInItsPlace) {
-  Sender sender(kThreshold);
-  GatedSink sink;
-  SendQueue queue(sender, sink, 5);
-  EXPECT_FALSE(sender.has_waiting());
-  queue.push_quietly(packet(1));
-  queue.push_quietly(packet(2, kThreshold + 1));
-  EXPECT_TRUE(sender.has_waiting());
-  EXPECT_TRUE(sink.sent().empty());
-  // The second is looked at, and sent with the large ones.
-  for (int i = 0; i < 3; ++i) {
-    sender.send_one();
-  }
-  EXPECT_EQ(sink.sent(), (std::vector<int>{1, 2}));
-  EXPECT_FALSE(sender.has_waiting());
-  sender.send_one();
-  EXPECT_EQ(queue.counters().messages, 2U);
-}
-
-TEST(SendQueue, WhatWaitsIsSentAfterTheDelay) {
-  Sender sender(kThreshold);
-  GatedSink sink;
-  SendQueue queue(sender, sink, 5);
-  queue.push_quietly(packet(1));
-  sender.wake_in(std::chrono::hours(1));
-  EXPECT_TRUE(sink.sent().empty());
-  // A sooner ring takes its place; a later one does not put it off.
-  queue.push(packet(2));
-  sender.wake_in(std::chrono::hours(1));
-  ASSERT_TRUE(sink.wait_entered(2));
-  EXPECT_TRUE(idle(queue));
-  EXPECT_EQ(sink.sent(), (std::vector<int>{1, 2}));
-}
-
-TEST(SendQueue, KeepsTheOrderWhoeverSends) {
-  Sender sender(kThreshold);
-  GatedSink sink;
-  SendQueue queue(sender, sink, 300);
-  const std::vector<int> expected = numbers(300);
-  for (const int number : expected) {
-    if (number % 3 == 0) {
-      queue.push(mixed_packet(number));
-    } else {
-      queue.push_quietly(mixed_packet(number));
-      sender.send_one();
-    }
-  }
-  ASSERT_TRUE(idle(queue));
-  EXPECT_EQ(sink.sent(), expected);
-}
-
-TEST(SendQueue, CountsWhatCouldNotBeSent) {
+TEST(SendQueue, CountsMessagesThatCannotBeSent) {
   Sender sender(kThreshold);
   GatedSink sink;
   SendQueue queue(sender, sink, 3);
@@ -213,7 +157,7 @@ TEST(SendQueue, WaitIdleGivesUpAtItsDeadline) {
   EXPECT_TRUE(idle(queue));
 }
 
-TEST(SendQueue, LetsGoOfWhatWaitsWhenDestroyed) {
+TEST(SendQueue, FreesWaitingMessagesAtDestruction) {
   Sender sender(kThreshold);
   GatedSink sink;
   sink.set_open(false);

@@ -11,17 +11,19 @@ void DedicatedThread::start() {
 }
 
 void DedicatedThread::release() {
-  const std::lock_guard lock(mutex_);
-  released_ = true;
+  {
+    const MutexLock lock(mutex_);
+    released_ = true;
+  }
   wake_.notify_one();
 }
 
 void DedicatedThread::wake() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     woken_ = true;
   }
-  wake_.notify_one();  // it would find the mutex taken
+  wake_.notify_one();
 }
 
 void DedicatedThread::join() {
@@ -40,10 +42,6 @@ void DedicatedThread::set_priority() {
                                    : "dedicated; SCHED_FIFO refused: " + refused);
 }
 
-Time DedicatedThread::next_timer() const {
-  return std::ranges::min_element(node_.timers(), {}, &Node::Timer::next)->next;
-}
-
 void DedicatedThread::run_due_timers() {
   auto& timers = node_.timers();
   for (std::size_t i = 0; i < timers.size(); ++i) {
@@ -59,23 +57,30 @@ void DedicatedThread::run_due_timers() {
   }
 }
 
+void DedicatedThread::wait_for_release() {
+  const MutexLock lock(mutex_);
+  while (!released_ && !stop_.requested()) wake_.wait(mutex_);
+}
+
+void DedicatedThread::wait_for_work() {
+  const auto& timers = node_.timers();
+  const auto next = std::ranges::min_element(timers, {}, &Node::Timer::next);
+  const MutexLock lock(mutex_);
+  while (!woken_ && !stop_.requested()) {
+    if (next == timers.end()) {
+      wake_.wait(mutex_);
+    } else if (!wake_.wait_until(mutex_, clock_.steady(next->next))) {
+      break;
+    }
+  }
+  woken_ = false;
+}
+
 void DedicatedThread::loop() {
   set_priority();
-  {
-    std::unique_lock lock(mutex_);
-    wake_.wait(lock, [this] { return released_ || stop_.requested(); });
-  }
-  const auto wanted = [this] { return woken_ || stop_.requested(); };
+  wait_for_release();
   while (!stop_.requested()) {
-    {
-      std::unique_lock lock(mutex_);
-      if (node_.timers().empty()) {
-        wake_.wait(lock, wanted);
-      } else {
-        wake_.wait_until(lock, clock_.steady(next_timer()), wanted);
-      }
-      woken_ = false;
-    }
+    wait_for_work();
     if (stop_.requested()) return;
     node_.run_messages();
     run_due_timers();

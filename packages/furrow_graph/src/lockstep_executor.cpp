@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <mutex>
+#include <atomic>
 
 #include "executor.hpp"
-#include "step_exchange.hpp"
+#include "stop_request.hpp"
 #include "worker_pool.hpp"
 
 namespace furrow::graph {
@@ -38,7 +38,7 @@ class LockstepExecutor final : public Executor {
   void share(std::unique_ptr<SharedLockstep> shared) override { shared_ = std::move(shared); }
 
   void deliver_from_transport(const Route::Reader& reader, MessagePtr message) override {
-    const std::lock_guard lock(transport_mutex_);
+    const MutexLock lock(transport_mutex_);
     from_transport_.push_back({reader, std::move(message)});
   }
 
@@ -157,7 +157,7 @@ class LockstepExecutor final : public Executor {
       const std::uint32_t index = entry.route->topic_index;
       const SharedLockstep::Topic& topic = shared_->topics[index];
       const std::uint32_t component = shared_->component_of_node[index_of(*entry.from)];
-      write_to_transport(*entry.route, entry.message);
+      entry.route->write_to_transport(entry.message);
       if (std::ranges::find(topic.read_by, true) != topic.read_by.end()) {
         step->topics.push_back(index);
       }
@@ -169,8 +169,7 @@ class LockstepExecutor final : public Executor {
       own_.push_back({component, index, std::move(entry.message)});
     }
     std::ranges::sort(step->topics);
-    const auto rest = std::ranges::unique(step->topics);
-    step->topics.erase(rest.begin(), rest.end());
+    step->topics.erase(std::unique(step->topics.begin(), step->topics.end()), step->topics.end());
     return step;
   }
 
@@ -240,13 +239,13 @@ class LockstepExecutor final : public Executor {
       for (const Route::Reader& reader : published.route->readers) {
         reader.node->push(reader.input, published.message);
       }
-      write_to_transport(*published.route, published.message);
+      published.route->write_to_transport(published.message);
     }
     outbox.clear();
   }
 
   void take_from_transport() {
-    const std::lock_guard lock(transport_mutex_);
+    const MutexLock lock(transport_mutex_);
     for (auto& [reader, message] : from_transport_)
       reader.node->push(reader.input, std::move(message));
     from_transport_.clear();
@@ -277,8 +276,9 @@ class LockstepExecutor final : public Executor {
   std::vector<std::vector<Published>> outboxes_;
   std::vector<Published> constructed_;
   std::vector<std::size_t> ready_;
-  std::mutex transport_mutex_;
-  std::vector<std::pair<Route::Reader, MessagePtr>> from_transport_;
+  Mutex transport_mutex_;
+  std::vector<std::pair<Route::Reader, MessagePtr>> from_transport_
+      FURROW_GUARDED_BY(transport_mutex_);
   std::function<void(Time)> each_second_;
   std::unique_ptr<SharedLockstep> shared_;
   std::vector<Delivery> own_;
@@ -286,33 +286,8 @@ class LockstepExecutor final : public Executor {
 
 }  // namespace
 
-SharedLockstep::SharedLockstep() = default;
-SharedLockstep::~SharedLockstep() = default;
-
 std::unique_ptr<Executor> make_lockstep_executor(int threads) {
   return std::make_unique<LockstepExecutor>(threads);
-}
-
-bool wanted_outside(const Route& route) {
-  return route.writer != nullptr &&
-         (route.qos.durability == msgs::Durability::kTransientLocal || route.writer->has_readers());
-}
-
-void write_to_transport(Route& route, const MessagePtr& message) {
-  if (wanted_outside(route)) route.writer->write(message);
-}
-
-void StopRequest::set(std::string_view reason, bool failed) {
-  const std::lock_guard lock(mutex_);
-  if (requested_) return;
-  reason_ = reason;
-  failed_ = failed;
-  requested_ = true;
-}
-
-RunResult StopRequest::result(Time end) const {
-  const std::lock_guard lock(mutex_);
-  return {reason_, failed_, end};
 }
 
 }  // namespace furrow::graph

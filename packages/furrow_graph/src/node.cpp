@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
-#include <limits>
 
 #include "furrow_graph/graph_check.hpp"
 
@@ -29,6 +28,7 @@ void Node::construct(std::function<Route&(const std::string& topic)> route_of) {
 }
 
 std::optional<std::size_t> Node::input_of(const std::string& topic) const {
+  const MutexLock lock(mutex_);
   const auto it = std::ranges::find(inputs_, topic, &Input::topic);
   if (it == inputs_.end()) return std::nullopt;
   return static_cast<std::size_t>(it - inputs_.begin());
@@ -36,7 +36,7 @@ std::optional<std::size_t> Node::input_of(const std::string& topic) const {
 
 void Node::push(std::size_t input, MessagePtr message) {
   Mail oldest;  // freed after the lock: that of an image takes a while
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Input& target = inputs_[input];
   ++target.received;
   if (target.waiting == target.depth) {
@@ -49,51 +49,12 @@ void Node::push(std::size_t input, MessagePtr message) {
 }
 
 bool Node::has_messages() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return !mail_.empty();
 }
 
-double Node::expected_call_s() const {
-  const std::lock_guard lock(mutex_);
-  if (mail_.empty()) return std::numeric_limits<double>::infinity();
-  const Input& input = inputs_[mail_.front().input];
-  if (input.calls == 0) return std::numeric_limits<double>::infinity();
-  return input.busy_s / static_cast<double>(input.calls);
-}
-
-std::size_t Node::run_messages(const std::function<void()>& between) {
-  std::size_t budget = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    budget = mail_.size();
-  }
-  std::size_t handled = 0;
-  for (; handled < budget; ++handled) {
-    Mail mail;
-    {
-      const std::lock_guard lock(mutex_);
-      if (mail_.empty()) break;
-      mail = mail_.pop();
-      --inputs_[mail.input].waiting;
-    }
-    if (handled > 0 && between) between();
-    Input& input = inputs_[mail.input];
-    arrival_ = mail.arrived;
-    call([&] { input.callback(mail.message); }, &input);
-  }
-  return handled;
-}
-
-void Node::run_timer(std::size_t timer, Time due) {
-  const Duration late = host_.now() - due;
-  {
-    const std::lock_guard lock(mutex_);
-    lateness_.add(late);
-  }
-  call([&] { timers_[timer].callback(due); });
-}
-
-void Node::call(const std::function<void()>& callback, Input* input) {
+template <class Callback>
+void Node::call(const Callback& callback) {
   const auto start = std::chrono::steady_clock::now();
   try {
     callback();
@@ -101,18 +62,44 @@ void Node::call(const std::function<void()>& callback, Input* input) {
     host_.request_stop("component '" + spec_.name + "' failed: " + failure.what(), true);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   ++callbacks_;
   busy_s_ += took.count();
-  if (input != nullptr) {
-    ++input->calls;
-    input->busy_s += took.count();
-  }
   longest_call_s_ = std::max(longest_call_s_, took.count());
 }
 
+void Node::run_messages() {
+  std::size_t budget = 0;
+  {
+    const MutexLock lock(mutex_);
+    budget = mail_.size();
+  }
+  for (; budget > 0; --budget) {
+    Mail mail;
+    const std::function<void(const MessagePtr&)>* callback = nullptr;
+    {
+      const MutexLock lock(mutex_);
+      mail = mail_.pop();
+      Input& input = inputs_[mail.input];
+      --input.waiting;
+      callback = &input.callback;  // fixed since construction
+    }
+    arrival_ = mail.arrived;
+    call([&] { (*callback)(mail.message); });
+  }
+}
+
+void Node::run_timer(std::size_t timer, Time due) {
+  const Duration late = host_.now() - due;
+  {
+    const MutexLock lock(mutex_);
+    lateness_.add(late);
+  }
+  call([&] { timers_[timer].callback(due); });
+}
+
 ComponentStatus Node::status() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   ComponentStatus status;
   status.name = spec_.name;
   status.class_name = spec_.class_name;
@@ -133,12 +120,12 @@ ComponentStatus Node::status() const {
 }
 
 void Node::set_thread(std::string text) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   thread_ = std::move(text);
 }
 
 void Node::set_memory(std::string text) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   memory_ = std::move(text);
 }
 
@@ -148,13 +135,13 @@ void Node::every(Duration period, std::function<void(Time)> callback) {
 }
 
 void Node::health(HealthLevel level, std::string_view message) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   health_.level = level;
   health_.message = message;
 }
 
 void Node::count(std::string_view counter, std::int64_t by) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   health_.counters[std::string(counter)] += by;
 }
 
@@ -171,6 +158,7 @@ void Node::bind_input(const msgs::Topic& topic, std::function<void(const Message
                       int depth) {
   require_declared(type_.description.inputs(), topic);
   if (depth < 1) throw ConfigError("the depth of an input must be positive");
+  const MutexLock lock(mutex_);
   inputs_.push_back(
       {resolved_topic(spec_, topic), static_cast<std::size_t>(depth), std::move(callback)});
 }

@@ -4,33 +4,19 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "furrow_core/mutex.hpp"
 #include "furrow_graph/context.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "lateness.hpp"
 #include "mailbox.hpp"
+#include "route.hpp"
 
 namespace furrow::graph {
-
-class Node;
-
-/// Where a node's messages go: the inputs of this process, and the transport.
-struct Route {
-  std::string topic;
-  msgs::Qos qos;
-  struct Reader {
-    Node* node;
-    std::size_t input;
-  };
-  std::vector<Reader> readers;
-  std::unique_ptr<TransportWriter> writer;
-  std::uint32_t topic_index = 0;  ///< among the graph's connections
-};
 
 /// What the executor offers to its nodes.
 class NodeHost {
@@ -67,12 +53,8 @@ class Node final : public Context {
 
   void push(std::size_t input, MessagePtr message);
   [[nodiscard]] bool has_messages() const;
-  /// The mean of earlier calls with messages of the input whose message is next; infinite where
-  /// there is no message, or was no call.
-  [[nodiscard]] double expected_call_s() const;
-  /// Takes out and handles the messages that are there now, oldest first; returns how many.
-  /// `between` is called between one and the next.
-  std::size_t run_messages(const std::function<void()>& between = {});
+  /// Handles the messages that are waiting now, oldest first.
+  void run_messages();
 
   [[nodiscard]] std::vector<Timer>& timers() { return timers_; }
   void run_timer(std::size_t timer, Time due);
@@ -109,13 +91,11 @@ class Node final : public Context {
     std::size_t waiting = 0;
     std::uint64_t received = 0;
     std::uint64_t dropped = 0;
-    std::uint64_t calls = 0;
-    double busy_s = 0.0;
   };
 
-  /// Calls the component and keeps account of the time, also by input where there is one; what it
-  /// throws stops the run.
-  void call(const std::function<void()>& callback, Input* input = nullptr);
+  /// Calls the component and measures the time. An exception stops the run.
+  template <class Callback>
+  void call(const Callback& callback);
   void require_declared(const std::vector<PortInfo>& ports, const msgs::Topic& topic) const;
 
   ComponentSpec spec_;
@@ -128,16 +108,16 @@ class Node final : public Context {
   std::vector<Timer> timers_;
   Time arrival_;  // of the message that is being handled
 
-  mutable std::mutex mutex_;  // of what follows
-  std::vector<Input> inputs_;
-  Mailbox mail_;
-  Health health_;
-  std::uint64_t callbacks_ = 0;
-  double busy_s_ = 0.0;
-  double longest_call_s_ = 0.0;
-  LatenessHistogram lateness_;
-  std::string thread_ = "pool";
-  std::string memory_;
+  mutable Mutex mutex_;
+  std::vector<Input> inputs_ FURROW_GUARDED_BY(mutex_);
+  Mailbox mail_ FURROW_GUARDED_BY(mutex_);
+  Health health_ FURROW_GUARDED_BY(mutex_);
+  std::uint64_t callbacks_ FURROW_GUARDED_BY(mutex_) = 0;
+  double busy_s_ FURROW_GUARDED_BY(mutex_) = 0.0;
+  double longest_call_s_ FURROW_GUARDED_BY(mutex_) = 0.0;
+  LatenessHistogram lateness_ FURROW_GUARDED_BY(mutex_);
+  std::string thread_ FURROW_GUARDED_BY(mutex_) = "pool";
+  std::string memory_ FURROW_GUARDED_BY(mutex_);
   std::atomic<std::uint64_t> missed_timers_ = 0;
 };
 

@@ -8,7 +8,6 @@
 #include "executor.hpp"
 #include "furrow_core/hash.hpp"
 #include "furrow_graph/graph_check.hpp"
-#include "step_exchange.hpp"
 
 namespace furrow::graph {
 
@@ -236,9 +235,8 @@ Runtime::Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOption
     : impl_(std::make_unique<Impl>()) {
   if (options.threads < 1) throw ConfigError("threads: must be at least 1");
   impl_->connections = check_graph(graph, registry);
-  impl_->executor = options.clock == ClockMode::kLockstep
-                        ? make_lockstep_executor(options.threads)
-                        : make_realtime_executor(options.threads, options.transport);
+  impl_->executor = options.clock == ClockMode::kLockstep ? make_lockstep_executor(options.threads)
+                                                          : make_realtime_executor(options.threads);
   for (const PlacedProcess& process : options.processes) {
     for (const std::string& component : process.components) {
       impl_->process_of[component] = process.name;

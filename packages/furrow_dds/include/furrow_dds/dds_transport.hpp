@@ -57,9 +57,6 @@ class DdsTransport final : public graph::Transport {
   [[nodiscard]] std::unique_ptr<graph::TransportReader> make_reader(
       const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
       std::function<void(graph::MessagePtr)> on_message) override;
-  [[nodiscard]] bool has_waiting() const override;
-  void send_one() override;
-  void wake_senders() override;
 
   /// `type_name` as in DDS, e.g. "sensor_msgs::msg::dds_::Image_". Topics are named as in
   /// DiscoverySnapshot. Throws ConfigError.
