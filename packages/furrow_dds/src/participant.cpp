@@ -31,19 +31,40 @@ void log_to_stderr() {
 
 }  // namespace
 
-Participant::Participant(const DdsParameters& parameters) : parameters_(parameters) {
+void Participant::Deleter::operator()(fdds::DomainParticipant* participant) const {
+  participant->set_listener(nullptr);
+  participant->delete_contained_entities();
+  fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+Participant::Handle Participant::create(const DdsParameters& parameters,
+                                        DiscoveryListener& listener) {
   const fdds::DomainParticipantQos qos = participant_qos(parameters);
   log_to_stderr();
   remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
   if (std::ranges::find(parameters.transports, "udp") != parameters.transports.end()) {
     wait_for_interfaces(parameters.interfaces, std::chrono::seconds(5));
   }
-  participant_ = fdds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &discovery_,
-      fdds::StatusMask::none());
-  if (participant_ == nullptr) {
+  Handle participant(fdds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &listener,
+      fdds::StatusMask::none()));
+  if (participant == nullptr) {
     throw ConfigError("DDS participant refused in domain " + std::to_string(parameters.domain_id) +
                       ": is there an interface with the given address, and memory in /dev/shm?");
+  }
+  return participant;
+}
+
+Participant::Participant(const DdsParameters& parameters)
+    : parameters_(parameters),
+      participant_(create(parameters_, discovery_)),
+      publisher_(participant_->create_publisher(fdds::PUBLISHER_QOS_DEFAULT)),
+      subscriber_(participant_->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT)),
+      sender_(static_cast<std::size_t>(parameters.bulk_threshold_kb * 1000)),
+      linger_left_(Duration::seconds(parameters.linger_s).count_ns()) {
+  if (publisher_ == nullptr || subscriber_ == nullptr) {
+    throw ConfigError("DDS refused a publisher or subscriber in domain " +
+                      std::to_string(parameters.domain_id));
   }
   ProcessInfo own;
   own.guid = to_guid(participant_->guid());
@@ -54,25 +75,13 @@ Participant::Participant(const DdsParameters& parameters) : parameters_(paramete
   std::from_chars(pid.data(), pid.data() + pid.size(), own.pid);
   own.own = true;
   discovery_.set_own(own);
-
-  publisher_ = participant_->create_publisher(fdds::PUBLISHER_QOS_DEFAULT);
-  subscriber_ = participant_->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT);
-  sender_ = std::make_unique<Sender>(static_cast<std::size_t>(parameters.bulk_threshold_kb * 1000));
-  linger_left_ = std::chrono::nanoseconds(Duration::seconds(parameters.linger_s).count_ns());
-}
-
-Participant::~Participant() {
-  sender_.reset();
-  participant_->set_listener(nullptr);
-  participant_->delete_contained_entities();
-  fdds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
 Participant::TopicUse::TopicUse(Participant& participant, const std::string& topic,
                                 const std::string& type_name)
     : participant_(participant) {
   const std::string name = dds_topic_name(topic);
-  const std::lock_guard lock(participant_.topics_mutex_);
+  const MutexLock lock(participant_.topics_mutex_);
   if (auto* known = participant_.participant_->lookup_topicdescription(name)) {
     if (known->get_type_name() != type_name) {
       throw ConfigError("topic " + topic + " has type " + known->get_type_name() + ", not " +
@@ -92,7 +101,7 @@ Participant::TopicUse::TopicUse(Participant& participant, const std::string& top
 }
 
 Participant::TopicUse::~TopicUse() {
-  const std::lock_guard lock(participant_.topics_mutex_);
+  const MutexLock lock(participant_.topics_mutex_);
   const auto use = participant_.topic_uses_.find(topic_->get_name());
   if (--use->second == 0) {
     participant_.topic_uses_.erase(use);
@@ -106,29 +115,29 @@ bool Participant::is_own(const eprosima::fastrtps::rtps::InstanceHandle_t& handl
 }
 
 void Participant::set_on_fault(std::function<void(const TransportFault&)> callback) {
-  const std::lock_guard lock(fault_mutex_);
+  const MutexLock lock(fault_mutex_);
   on_fault_ = std::move(callback);
 }
 
 void Participant::report(TransportFaultKind kind, const std::string& topic) {
-  const std::lock_guard lock(fault_mutex_);
+  const MutexLock lock(fault_mutex_);
   if (on_fault_) {
     on_fault_({kind, topic});
   }
 }
 
 void Participant::add(Endpoint* endpoint) {
-  const std::lock_guard lock(endpoints_mutex_);
+  const MutexLock lock(endpoints_mutex_);
   endpoints_.push_back(endpoint);
 }
 
 void Participant::remove(Endpoint* endpoint) {
-  const std::lock_guard lock(endpoints_mutex_);
+  const MutexLock lock(endpoints_mutex_);
   std::erase(endpoints_, endpoint);
 }
 
 std::vector<EndpointStatus> Participant::status() const {
-  const std::lock_guard lock(endpoints_mutex_);
+  const MutexLock lock(endpoints_mutex_);
   std::vector<EndpointStatus> out;
   out.reserve(endpoints_.size());
   for (const Endpoint* endpoint : endpoints_) {
@@ -138,13 +147,13 @@ std::vector<EndpointStatus> Participant::status() const {
 }
 
 bool Participant::flush(std::chrono::steady_clock::time_point deadline) {
-  const std::lock_guard lock(endpoints_mutex_);
+  const MutexLock lock(endpoints_mutex_);
   return std::all_of(endpoints_.begin(), endpoints_.end(),
                      [&](Endpoint* endpoint) { return endpoint->flush(deadline); });
 }
 
 void Participant::linger(Endpoint& endpoint) {
-  const std::lock_guard lock(linger_mutex_);
+  const MutexLock lock(linger_mutex_);
   const auto start = std::chrono::steady_clock::now();
   [[maybe_unused]] const bool delivered = endpoint.flush(start + linger_left_);
   linger_left_ -=

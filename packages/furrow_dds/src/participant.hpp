@@ -8,35 +8,35 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "discovery_listener.hpp"
+#include "furrow_core/mutex.hpp"
 #include "furrow_dds/dds_transport.hpp"
 #include "sender.hpp"
 
 namespace furrow::dds {
 
-/// What DdsTransport asks of its endpoints.
+/// A writer or reader as DdsTransport sees it.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
   [[nodiscard]] virtual EndpointStatus status() const = 0;
-  /// False when something is not delivered at `deadline`.
+  /// False if a message is not delivered at `deadline`.
   [[nodiscard]] virtual bool flush(std::chrono::steady_clock::time_point deadline) = 0;
 };
 
-/// The participant and what its endpoints share.
+/// The DDS participant of a process and the state that its endpoints share.
 class Participant {
  public:
+  /// Throws ConfigError, or std::system_error if no thread can be started. Leaves nothing behind.
   explicit Participant(const DdsParameters& parameters);
-  ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// A topic, held as long as an endpoint uses it. Throws ConfigError when the process has it with
-  /// another type.
+  /// A DDS topic, which exists as long as an endpoint uses it. Throws ConfigError if the process
+  /// uses the topic with another type.
   class TopicUse {
    public:
     TopicUse(Participant& participant, const std::string& topic, const std::string& type_name);
@@ -50,12 +50,12 @@ class Participant {
     eprosima::fastdds::dds::Topic* topic_ = nullptr;
   };
 
-  /// Is the endpoint with this handle one of this participant?
+  /// True for an endpoint of this participant.
   [[nodiscard]] bool is_own(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) const;
 
   [[nodiscard]] eprosima::fastdds::dds::Publisher& publisher() { return *publisher_; }
   [[nodiscard]] eprosima::fastdds::dds::Subscriber& subscriber() { return *subscriber_; }
-  [[nodiscard]] Sender& sender() { return *sender_; }
+  [[nodiscard]] Sender& sender() { return sender_; }
   [[nodiscard]] const DiscoveryListener& discovery() const { return discovery_; }
   [[nodiscard]] const DdsParameters& parameters() const { return parameters_; }
 
@@ -67,28 +67,36 @@ class Participant {
   [[nodiscard]] std::vector<EndpointStatus> status() const;
   [[nodiscard]] bool flush(std::chrono::steady_clock::time_point deadline);
 
-  /// Flushes one endpoint at its end, from the time that all have together.
+  /// Flushes an endpoint before its destruction, within the time that all endpoints share.
   void linger(Endpoint& endpoint);
 
  private:
-  DdsParameters parameters_;
+  struct Deleter {
+    void operator()(eprosima::fastdds::dds::DomainParticipant* participant) const;
+  };
+  using Handle = std::unique_ptr<eprosima::fastdds::dds::DomainParticipant, Deleter>;
+  [[nodiscard]] static Handle create(const DdsParameters& parameters, DiscoveryListener& listener);
+
+  // In this order: Fast DDS calls the listener as long as the participant exists, and the sender
+  // writes to endpoints of the participant.
+  const DdsParameters parameters_;
   DiscoveryListener discovery_;
-  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  Handle participant_;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
-  std::unique_ptr<Sender> sender_;
+  Sender sender_;
 
-  std::mutex topics_mutex_;
-  std::map<std::string, int> topic_uses_;
+  Mutex topics_mutex_;
+  std::map<std::string, int> topic_uses_ FURROW_GUARDED_BY(topics_mutex_);
 
-  std::mutex fault_mutex_;
-  std::function<void(const TransportFault&)> on_fault_;
+  Mutex fault_mutex_;
+  std::function<void(const TransportFault&)> on_fault_ FURROW_GUARDED_BY(fault_mutex_);
 
-  mutable std::mutex endpoints_mutex_;
-  std::vector<Endpoint*> endpoints_;
+  mutable Mutex endpoints_mutex_;
+  std::vector<Endpoint*> endpoints_ FURROW_GUARDED_BY(endpoints_mutex_);
 
-  std::mutex linger_mutex_;
-  std::chrono::nanoseconds linger_left_{};
+  Mutex linger_mutex_;
+  std::chrono::nanoseconds linger_left_ FURROW_GUARDED_BY(linger_mutex_);
 };
 
 }  // namespace furrow::dds
