@@ -83,9 +83,9 @@ std::uint64_t make_recording(const std::string& stem, double seconds) {
   parameters.min_free_mb = 0.0;
   recording::Recorder recorder(parameters, stem);
   const auto add = [&recorder](const char* name) {
-    return recorder.add_topic(
-        recording::describe_topic(name, msgs::topics::CameraImage::topic().type->ros_name,
-                                  {msgs::sensor_qos(100)}, recording::SchemaStyle::kRos2msg));
+    return recorder.add_topic(recording::describe_topic(
+        name, msgs::topics::CameraImage::topic().type->ros_name, {msgs::reliable_stream_qos(100)},
+        recording::SchemaStyle::kRos2msg));
   };
   const std::size_t images = add(kImages);
   const std::size_t odometry = add(kOdometry);
@@ -150,7 +150,7 @@ PlaybackTiming measure_playback(const RecordingBenchmark& benchmark) {
   std::vector<std::unique_ptr<dds::RawReader>> readers;
   for (const char* topic : {kImages, kOdometry}) {
     readers.push_back(
-        to.make_raw_reader(topic, type, msgs::sensor_qos(100),
+        to.make_raw_reader(topic, type, msgs::reliable_stream_qos(100),
                            [&errors](dds::RawMessage message) { errors.add(message); }));
   }
   {

@@ -110,7 +110,7 @@ void DiscoveryListener::update(const ProxyData& data, bool writer, bool removed)
     endpoints_.erase(guid);
   } else if (endpoints_.size() < kMaxEntries || endpoints_.contains(guid)) {
     Endpoint& endpoint = endpoints_[guid];
-    endpoint.dds_topic_name = data.topicName().to_string();
+    endpoint.dds_topic = data.topicName().to_string();
     endpoint.writer = writer;
     endpoint.info.guid = guid;
     endpoint.info.process = participant_of(guid);
@@ -137,6 +137,31 @@ std::uint64_t DiscoveryListener::version() const {
   return version_;
 }
 
+std::optional<msgs::Reliability> DiscoveryListener::reliability_of(const Guid& endpoint) const {
+  const MutexLock lock(mutex_);
+  const auto it = endpoints_.find(endpoint);
+  if (it == endpoints_.end()) return std::nullopt;
+  return it->second.info.qos.reliability;
+}
+
+std::string DiscoveryListener::incompatibility(const std::string& topic, bool own_is_writer,
+                                               const msgs::Qos& own) const {
+  const std::string name = dds_topic_name(topic);
+  const MutexLock lock(mutex_);
+  for (const auto& [guid, endpoint] : endpoints_) {
+    if (endpoint.info.own || endpoint.writer == own_is_writer || endpoint.dds_topic != name) {
+      continue;
+    }
+    const msgs::Qos& other = endpoint.info.qos;
+    const std::string text =
+        own_is_writer ? msgs::incompatibility(own, other) : msgs::incompatibility(other, own);
+    if (text.empty()) continue;
+    const auto process = processes_.find(endpoint.info.process);
+    return process == processes_.end() ? text : text + " (process '" + process->second.name + "')";
+  }
+  return {};
+}
+
 DiscoverySnapshot DiscoveryListener::snapshot() const {
   DiscoverySnapshot out;
   std::map<std::string, TopicInfo> topics;
@@ -148,7 +173,7 @@ DiscoverySnapshot DiscoveryListener::snapshot() const {
       out.processes.push_back(process);
     }
     for (const auto& [guid, endpoint] : endpoints_) {
-      const std::string name = topic_name(endpoint.dds_topic_name);
+      const std::string name = topic_name(endpoint.dds_topic);
       TopicInfo& topic = topics[name];
       (endpoint.writer ? topic.writers : topic.readers).push_back(endpoint.info);
       type_names[name].insert(endpoint.info.type_name);

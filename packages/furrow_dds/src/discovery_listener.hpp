@@ -2,6 +2,7 @@
 
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "furrow_core/mutex.hpp"
@@ -15,7 +16,8 @@ namespace furrow::dds {
 [[nodiscard]] std::string dds_topic_name(const std::string& topic);
 [[nodiscard]] std::string topic_name(const std::string& dds_name);
 
-/// Keeps the picture of the domain. Bounded: what would exceed kMaxEntries is left out.
+/// Records the discovered processes and endpoints. Thread-safe. Bounded: entries beyond kMaxEntries
+/// are left out.
 class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   static constexpr std::size_t kMaxEntries = 10000;
@@ -23,6 +25,12 @@ class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipant
   void set_own(const ProcessInfo& own);
   [[nodiscard]] DiscoverySnapshot snapshot() const;
   [[nodiscard]] std::uint64_t version() const;
+  /// The reliability that a discovered endpoint announced.
+  [[nodiscard]] std::optional<msgs::Reliability> reliability_of(const Guid& endpoint) const;
+  /// Why an endpoint of another process does not match ours: the policies with both values, and the
+  /// process. Empty: no announced policy explains it.
+  [[nodiscard]] std::string incompatibility(const std::string& topic, bool own_is_writer,
+                                            const msgs::Qos& own) const;
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -33,7 +41,7 @@ class DiscoveryListener final : public eprosima::fastdds::dds::DomainParticipant
 
  private:
   struct Endpoint {
-    std::string dds_topic_name;
+    std::string dds_topic;
     bool writer = false;
     EndpointInfo info;
   };

@@ -31,6 +31,18 @@ void log_to_stderr() {
 
 }  // namespace
 
+void IncompatibilityLog::add(const std::string& detail) {
+  const MutexLock lock(mutex_);
+  ++count_;
+  last_ = detail;
+}
+
+void IncompatibilityLog::add_to(EndpointStatus& status) const {
+  const MutexLock lock(mutex_);
+  status.incompatible = count_;
+  status.incompatibility = last_;
+}
+
 void Participant::Deleter::operator()(fdds::DomainParticipant* participant) const {
   participant->set_listener(nullptr);
   participant->delete_contained_entities();
@@ -119,11 +131,17 @@ void Participant::set_on_fault(std::function<void(const TransportFault&)> callba
   on_fault_ = std::move(callback);
 }
 
-void Participant::report(TransportFaultKind kind, const std::string& topic) {
+void Participant::report(const TransportFault& fault) {
   const MutexLock lock(fault_mutex_);
   if (on_fault_) {
-    on_fault_({kind, topic});
+    on_fault_(fault);
   }
+}
+
+std::string Participant::incompatibility(const std::string& topic, bool own_is_writer,
+                                         const msgs::Qos& own, fdds::QosPolicyId_t policy) const {
+  const std::string text = discovery_.incompatibility(topic, own_is_writer, own);
+  return text.empty() ? "DDS QoS policy " + std::to_string(policy) : text;
 }
 
 void Participant::add(Endpoint* endpoint) {

@@ -27,6 +27,18 @@ class Endpoint {
   [[nodiscard]] virtual bool flush(std::chrono::steady_clock::time_point deadline) = 0;
 };
 
+/// Counts the endpoints that do not match one of ours because of their QoS. Thread-safe.
+class IncompatibilityLog {
+ public:
+  void add(const std::string& detail);
+  void add_to(EndpointStatus& status) const;
+
+ private:
+  mutable Mutex mutex_;
+  std::uint64_t count_ FURROW_GUARDED_BY(mutex_) = 0;
+  std::string last_ FURROW_GUARDED_BY(mutex_);
+};
+
 /// The DDS participant of a process and the state that its endpoints share.
 class Participant {
  public:
@@ -60,7 +72,11 @@ class Participant {
   [[nodiscard]] const DdsParameters& parameters() const { return parameters_; }
 
   void set_on_fault(std::function<void(const TransportFault&)> callback);
-  void report(TransportFaultKind kind, const std::string& topic);
+  void report(const TransportFault& fault);
+  /// TransportFault::detail for an endpoint that DDS refused to match because of `policy`.
+  [[nodiscard]] std::string incompatibility(const std::string& topic, bool own_is_writer,
+                                            const msgs::Qos& own,
+                                            eprosima::fastdds::dds::QosPolicyId_t policy) const;
 
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);

@@ -1,5 +1,8 @@
 #include "reader.hpp"
 
+#include <system_error>
+#include <utility>
+
 #include "endpoint_qos.hpp"
 #include "participant_qos.hpp"
 
@@ -13,11 +16,11 @@ Reader::Reader(Participant& participant, const std::string& topic, const std::st
                const msgs::Qos& qos, std::unique_ptr<SampleHandler> handler)
     : participant_(participant),
       topic_(topic),
+      type_name_(type_name),
+      qos_(qos),
       handler_(std::move(handler)),
-      topic_use_(participant, topic, type_name) {
-  fdds::DataReaderQos own = reader_qos(qos);
-  own.endpoint().unicast_locator_list = reader_locators(participant.parameters(), type_name);
-  data_reader_ = participant.subscriber().create_datareader(topic_use_.get(), own, &listener_);
+      topic_use_(participant, topic, type_name),
+      data_reader_(create(qos, listener_)) {
   if (data_reader_ == nullptr) {
     throw ConfigError("topic " + topic + ": DDS refused a reader with this QoS");
   }
@@ -26,9 +29,39 @@ Reader::Reader(Participant& participant, const std::string& topic, const std::st
 
 Reader::~Reader() {
   participant_.remove(this);
-  listener_.close();
-  data_reader_->set_listener(nullptr);
-  participant_.subscriber().delete_datareader(data_reader_);
+  std::thread adding;
+  {
+    const MutexLock lock(mutex_);
+    closed_ = true;
+    adding = std::move(adding_);
+  }
+  if (adding.joinable()) adding.join();
+  for (fdds::DataReader* reader : {data_reader_, best_effort_reader_}) {
+    if (reader == nullptr) continue;
+    reader->set_listener(nullptr);
+    participant_.subscriber().delete_datareader(reader);
+  }
+}
+
+fdds::DataReader* Reader::create(const msgs::Qos& qos, Listener& listener) {
+  fdds::DataReaderQos own = reader_qos(qos);
+  own.endpoint().unicast_locator_list = reader_locators(participant_.parameters(), type_name_);
+  return participant_.subscriber().create_datareader(topic_use_.get(), own, &listener);
+}
+
+void Reader::add_best_effort_reader() {
+  if (adding_.joinable()) return;  // there is one, or it is being created
+  try {
+    adding_ = std::thread([this] {
+      best_effort_reader_ =
+          create({.reliability = msgs::Reliability::kBestEffort, .depth = qos_.depth},
+                 best_effort_listener_);
+      if (best_effort_reader_ != nullptr) return;
+      report_incompatible("DDS refused a best effort reader");
+    });
+  } catch (const std::system_error& error) {
+    report_incompatible(std::string("no thread to create a best effort reader: ") + error.what());
+  }
 }
 
 graph::TransportCounters Reader::counters() const {
@@ -42,21 +75,24 @@ EndpointStatus Reader::status() const {
   status.counters = counters();
   status.deadlines_missed = deadlines_missed_;
   status.liveliness_losses = liveliness_losses_;
-  status.incompatible = incompatible_;
+  status.best_effort_writers = best_effort_count_;
+  incompatible_.add_to(status);
   return status;
 }
 
-void Reader::take(fdds::DataReader& reader) {
+void Reader::take(fdds::DataReader& reader, bool best_effort_only) {
   NoData nothing;
   fdds::SampleInfo info;
-  // Who wrote it is looked at first: what this process wrote itself is not worth deserializing.
+  // The writer is known before the sample is deserialized, which an ignored sample never is.
   while (reader.get_first_untaken_info(&info) == ReturnCode_t::RETCODE_OK) {
-    const bool own = participant_.is_own(info.publication_handle);
-    CdrSample& data = own ? nothing : handler_->data();
+    const bool ignored = participant_.is_own(info.publication_handle) ||
+                         (best_effort_only && !best_effort_writers_.contains(
+                                                  to_guid(iHandle2GUID(info.publication_handle))));
+    CdrSample& data = ignored ? nothing : handler_->data();
     if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) {
       return;
     }
-    if (own || !info.valid_data) {
+    if (ignored || !info.valid_data) {
       continue;
     }
     count_gap(info);
@@ -81,63 +117,84 @@ void Reader::count_gap(const fdds::SampleInfo& info) {
   }
 }
 
-void Reader::Listener::close() {
-  const MutexLock lock(mutex_);
-  closed_ = true;
+void Reader::update_matched(const Guid& writer, bool matched, bool best_effort_only) {
+  if (matched) {
+    // Discovery precedes the match.
+    const bool best_effort =
+        participant_.discovery().reliability_of(writer) == msgs::Reliability::kBestEffort;
+    if (best_effort) best_effort_writers_.insert(writer);
+    if (best_effort || !best_effort_only) ++writers_;
+  } else if (best_effort_writers_.erase(writer) > 0 || !best_effort_only) {
+    --writers_;
+    last_sequence_.erase(writer);
+    silent_.erase(writer);
+  }
+  best_effort_count_ = static_cast<int>(best_effort_writers_.size());
+}
+
+void Reader::report(TransportFaultKind kind, std::string detail) const {
+  participant_.report({kind, topic_, std::move(detail)});
+}
+
+void Reader::report_incompatible(const std::string& detail) {
+  incompatible_.add(detail);
+  report(TransportFaultKind::kIncompatible, detail);
 }
 
 void Reader::Listener::on_data_available(fdds::DataReader* reader) {
-  const MutexLock lock(mutex_);
-  if (!closed_) {
-    reader_.take(*reader);
+  const MutexLock lock(reader_.mutex_);
+  if (!reader_.closed_) {
+    reader_.take(*reader, best_effort_only_);
   }
 }
 
 void Reader::Listener::on_subscription_matched(fdds::DataReader*,
                                                const fdds::SubscriptionMatchedStatus& status) {
-  const MutexLock lock(mutex_);
-  if (closed_ || reader_.participant_.is_own(status.last_publication_handle)) {
+  const MutexLock lock(reader_.mutex_);
+  if (reader_.closed_ || reader_.participant_.is_own(status.last_publication_handle)) {
     return;
   }
-  reader_.writers_ += status.current_count_change;
-  if (status.current_count_change < 0) {
-    const Guid writer = to_guid(iHandle2GUID(status.last_publication_handle));
-    reader_.last_sequence_.erase(writer);
-    reader_.silent_.erase(writer);
-  }
+  reader_.update_matched(to_guid(iHandle2GUID(status.last_publication_handle)),
+                         status.current_count_change > 0, best_effort_only_);
 }
 
 void Reader::Listener::on_requested_deadline_missed(
     fdds::DataReader*, const eprosima::fastrtps::RequestedDeadlineMissedStatus& status) {
-  const MutexLock lock(mutex_);
-  // Without a writer outside, messages come inside the process, where DDS does not see them.
-  if (!closed_ && status.total_count_change > 0 && reader_.writers_ > 0) {
+  const MutexLock lock(reader_.mutex_);
+  // Without an external writer, messages come from the own process, which DDS does not see.
+  if (!reader_.closed_ && status.total_count_change > 0 && reader_.writers_ > 0) {
     reader_.deadlines_missed_ += static_cast<std::uint64_t>(status.total_count_change);
-    reader_.participant_.report(TransportFaultKind::kDeadlineMissed, reader_.topic_);
+    reader_.report(TransportFaultKind::kDeadlineMissed);
   }
 }
 
 void Reader::Listener::on_liveliness_changed(
     fdds::DataReader*, const eprosima::fastrtps::LivelinessChangedStatus& status) {
-  const MutexLock lock(mutex_);
-  if (closed_ || reader_.participant_.is_own(status.last_publication_handle)) {
+  const MutexLock lock(reader_.mutex_);
+  if (reader_.closed_ || best_effort_only_ ||
+      reader_.participant_.is_own(status.last_publication_handle)) {
     return;
   }
   const Guid writer = to_guid(iHandle2GUID(status.last_publication_handle));
   if (status.not_alive_count_change > 0 && reader_.silent_.insert(writer).second) {
     ++reader_.liveliness_losses_;
-    reader_.participant_.report(TransportFaultKind::kLivelinessLost, reader_.topic_);
+    reader_.report(TransportFaultKind::kLivelinessLost);
   } else if (status.alive_count_change > 0 && reader_.silent_.erase(writer) > 0) {
-    reader_.participant_.report(TransportFaultKind::kLivelinessRegained, reader_.topic_);
+    reader_.report(TransportFaultKind::kLivelinessRegained);
   }
 }
 
 void Reader::Listener::on_requested_incompatible_qos(
     fdds::DataReader*, const fdds::RequestedIncompatibleQosStatus& status) {
-  const MutexLock lock(mutex_);
-  if (!closed_ && status.total_count_change > 0) {
-    reader_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
-    reader_.participant_.report(TransportFaultKind::kIncompatible, reader_.topic_);
+  const MutexLock lock(reader_.mutex_);
+  if (reader_.closed_ || status.total_count_change <= 0) {
+    return;
+  }
+  if (reader_.qos_.accept_best_effort && status.last_policy_id == fdds::RELIABILITY_QOS_POLICY_ID) {
+    reader_.add_best_effort_reader();
+  } else {
+    reader_.report_incompatible(reader_.participant_.incompatibility(
+        reader_.topic_, false, reader_.qos_, status.last_policy_id));
   }
 }
 

@@ -7,22 +7,26 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "cdr_type.hpp"
 #include "participant.hpp"
 
 namespace furrow::dds {
 
-/// How samples of one reader are read and handed on.
+/// Deserializes the samples of one reader and passes them on.
 class SampleHandler {
  public:
   virtual ~SampleHandler() = default;
-  /// Where the next sample is read into.
+  /// Where the next sample is deserialized into.
   [[nodiscard]] virtual CdrSample& data() = 0;
-  /// Hands on what was read; its bytes, or 0 when it was malformed.
+  /// Passes the sample on. Returns its bytes, or 0 if it was malformed.
   [[nodiscard]] virtual std::size_t deliver(const eprosima::fastdds::dds::SampleInfo& info) = 0;
 };
 
+/// Reads one topic. With Qos::accept_best_effort it is one reliable DDS reader, joined by a best
+/// effort one when a writer that offers best effort is discovered. Each writer is read by one of
+/// the two, so that reliable writers stay reliable.
 class Reader final : public Endpoint {
  public:
   Reader(Participant& participant, const std::string& topic, const std::string& type_name,
@@ -35,11 +39,11 @@ class Reader final : public Endpoint {
   [[nodiscard]] bool flush(std::chrono::steady_clock::time_point) override { return true; }
 
  private:
-  /// Its calls may come from several threads; none acts after close().
+  /// Called by the receive threads of Fast DDS.
   class Listener final : public eprosima::fastdds::dds::DataReaderListener {
    public:
-    explicit Listener(Reader& reader) : reader_(reader) {}
-    void close();
+    Listener(Reader& reader, bool best_effort_only)
+        : reader_(reader), best_effort_only_(best_effort_only) {}
     void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
     void on_subscription_matched(
         eprosima::fastdds::dds::DataReader*,
@@ -55,15 +59,25 @@ class Reader final : public Endpoint {
 
    private:
     Reader& reader_;
-    Mutex mutex_;
-    bool closed_ FURROW_GUARDED_BY(mutex_) = false;
+    const bool best_effort_only_;  ///< of the second DDS reader: ignores reliable writers
   };
 
-  void take(eprosima::fastdds::dds::DataReader& reader);
-  void count_gap(const eprosima::fastdds::dds::SampleInfo& info);
+  [[nodiscard]] eprosima::fastdds::dds::DataReader* create(const msgs::Qos& qos,
+                                                           Listener& listener);
+  void take(eprosima::fastdds::dds::DataReader& reader, bool best_effort_only)
+      FURROW_REQUIRES(mutex_);
+  void count_gap(const eprosima::fastdds::dds::SampleInfo& info) FURROW_REQUIRES(mutex_);
+  void update_matched(const Guid& writer, bool matched, bool best_effort_only)
+      FURROW_REQUIRES(mutex_);
+  /// In another thread, because a listener must not create endpoints.
+  void add_best_effort_reader() FURROW_REQUIRES(mutex_);
+  void report(TransportFaultKind kind, std::string detail = {}) const;
+  void report_incompatible(const std::string& detail);
 
   Participant& participant_;
   const std::string topic_;
+  const std::string type_name_;
+  const msgs::Qos qos_;
   std::unique_ptr<SampleHandler> handler_;
   std::atomic<int> writers_{0};
   std::atomic<std::uint64_t> messages_{0};
@@ -71,13 +85,21 @@ class Reader final : public Endpoint {
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> deadlines_missed_{0};
   std::atomic<std::uint64_t> liveliness_losses_{0};
-  std::atomic<std::uint64_t> incompatible_{0};
-  // Used by the listener under its mutex; an entry per matched writer.
-  std::map<Guid, std::uint64_t> last_sequence_;
-  std::set<Guid> silent_;
+  std::atomic<int> best_effort_count_{0};
+  IncompatibilityLog incompatible_;
+
+  Mutex mutex_;  // held in the listeners' calls
+  bool closed_ FURROW_GUARDED_BY(mutex_) = false;
+  std::map<Guid, std::uint64_t> last_sequence_ FURROW_GUARDED_BY(mutex_);  // per matched writer
+  std::set<Guid> silent_ FURROW_GUARDED_BY(mutex_);
+  std::set<Guid> best_effort_writers_ FURROW_GUARDED_BY(mutex_);
+  std::thread adding_ FURROW_GUARDED_BY(mutex_);
+
   Participant::TopicUse topic_use_;
-  Listener listener_{*this};
-  eprosima::fastdds::dds::DataReader* data_reader_ = nullptr;
+  Listener listener_{*this, false};
+  Listener best_effort_listener_{*this, true};
+  eprosima::fastdds::dds::DataReader* best_effort_reader_ = nullptr;  // written by adding_
+  eprosima::fastdds::dds::DataReader* data_reader_ = nullptr;  // last: its listener uses the above
 };
 
 }  // namespace furrow::dds

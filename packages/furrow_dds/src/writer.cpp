@@ -15,8 +15,7 @@ Writer::Writer(Participant& participant, const std::string& topic, const std::st
     : participant_(participant),
       topic_(topic),
       type_(type),
-      latched_(qos.durability == msgs::Durability::kTransientLocal),
-      reliable_(qos.reliability == msgs::Reliability::kReliable),
+      qos_(qos),
       topic_use_(participant, topic, type_name) {
   const std::int64_t depth =
       std::clamp<std::int64_t>(qos.depth, 1, participant.parameters().queue_limit);
@@ -42,7 +41,7 @@ Writer::~Writer() {
 void Writer::write(graph::MessagePtr message) {
   if (message == nullptr) {
     count_dropped();
-  } else if (latched_ || has_readers()) {
+  } else if (qos_.durability == msgs::Durability::kTransientLocal || has_readers()) {
     queue_->push(std::move(message));
   }
 }
@@ -74,7 +73,7 @@ EndpointStatus Writer::status() const {
   status.writer = true;
   status.peers = readers_;
   status.counters = counters();
-  status.incompatible = incompatible_;
+  incompatible_.add_to(status);
   return status;
 }
 
@@ -82,7 +81,7 @@ bool Writer::flush(std::chrono::steady_clock::time_point deadline) {
   if (!queue_->wait_idle(deadline)) {
     return false;
   }
-  if (!reliable_ || !has_readers()) {
+  if (qos_.reliability == msgs::Reliability::kBestEffort || !has_readers()) {
     return true;
   }
   const auto left = std::max(std::chrono::nanoseconds(0),
@@ -108,8 +107,10 @@ void Writer::Listener::on_offered_incompatible_qos(
     fdds::DataWriter*, const fdds::OfferedIncompatibleQosStatus& status) {
   const MutexLock lock(mutex_);
   if (!closed_ && status.total_count_change > 0) {
-    writer_.incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
-    writer_.participant_.report(TransportFaultKind::kIncompatible, writer_.topic_);
+    const std::string detail = writer_.participant_.incompatibility(
+        writer_.topic_, true, writer_.qos_, status.last_policy_id);
+    writer_.incompatible_.add(detail);
+    writer_.participant_.report({TransportFaultKind::kIncompatible, writer_.topic_, detail});
   }
 }
 

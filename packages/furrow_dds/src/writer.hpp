@@ -50,10 +50,9 @@ class Writer final : public Endpoint, private MessageSink {
   Participant& participant_;
   const std::string topic_;
   const msgs::MessageType* type_;
-  const bool latched_;
-  const bool reliable_;
+  const msgs::Qos qos_;
   std::atomic<int> readers_{0};
-  std::atomic<std::uint64_t> incompatible_{0};
+  IncompatibilityLog incompatible_;
   Participant::TopicUse topic_use_;
   Listener listener_{*this};
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;

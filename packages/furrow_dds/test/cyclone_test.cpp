@@ -119,6 +119,25 @@ TEST_F(CycloneTest, ReadsImagesOfFurrow) {
   }
 }
 
+TEST_F(CycloneTest, ACameraThatOffersBestEffortIsHeard) {
+  Inbox<graph::MessagePtr> images;
+  const msgs::Topic& topic = topics::CameraImage::topic();
+  const auto camera =
+      transport_.make_reader("cyclone/image", *topic.type, topic.qos,
+                             [&images](graph::MessagePtr message) { images.put(message); });
+  const auto out = writer(topics::RobotOdometry::topic());
+  ASSERT_TRUE(eventually([&] { return camera->writers() == 1; }));
+  auto odometry = std::make_shared<Odometry>();
+  odometry->header().frame_id("field");
+  ASSERT_TRUE(eventually([&] {
+    out->write(odometry);
+    return !images.items().empty();
+  }));
+  const auto& image = *static_cast<const Image*>(images.items().front().get());
+  EXPECT_EQ(image.header().frame_id(), "field");
+  EXPECT_EQ(image.data(), std::vector<std::uint8_t>{7});
+}
+
 TEST_F(CycloneTest, ReadsOdometryOfFurrowAndFeedsItOdometry) {
   const auto out = writer(topics::RobotOdometry::topic());
   auto odometry = std::make_shared<Odometry>();

@@ -28,7 +28,7 @@ TEST(Discovery, TellsProcessesTopicsTypesAndQos) {
   qos.liveliness_lease = Duration::milliseconds(300);
   qos.deadline = Duration::milliseconds(500);
   auto writer = robot->make_writer("plan", string_type(), qos);
-  auto reader = robot->make_reader("image", image_type(), msgs::sensor_qos(),
+  auto reader = robot->make_reader("image", image_type(), msgs::sensor_stream_qos(),
                                    [](const graph::MessagePtr&) {});
   ASSERT_TRUE(eventually([&] {
     const auto snapshot = watcher.discovery();

@@ -76,10 +76,10 @@ TEST(Faults, AReaderThatDoesNotTakeHoldsNobodyUp) {
   std::promise<void> release;
   const std::shared_future<void> released = release.get_future().share();
   StringInbox inbox;
-  const auto stuck = b.make_reader("image", image_type(), msgs::sensor_qos(),
+  const auto stuck = b.make_reader("image", image_type(), msgs::reliable_stream_qos(),
                                    [&](const graph::MessagePtr&) { released.wait(); });
   const auto healthy = c.make_reader("text", string_type(), msgs::event_qos(), inbox.handler());
-  const auto images = a.make_writer("image", image_type(), msgs::sensor_qos());
+  const auto images = a.make_writer("image", image_type(), msgs::reliable_stream_qos());
   const auto text = a.make_writer("text", string_type(), msgs::event_qos());
   ASSERT_TRUE(eventually([&] { return images->has_readers() && text->has_readers(); }));
   const auto image = make_image(1'000'000, 1);
@@ -124,10 +124,14 @@ TEST(Faults, IncompatibleQosIsReportedOnBothSides) {
   b.on_fault([&](const TransportFault& fault) { at_reader.put(fault); });
   StringInbox inbox;
   const auto reader = b.make_reader("text", string_type(), msgs::latched_qos(), inbox.handler());
-  const auto writer = a.make_writer("text", string_type(), msgs::sensor_qos());
+  const auto writer = a.make_writer("text", string_type(), msgs::reliable_stream_qos());
   EXPECT_TRUE(at_writer.wait_for(1));
   EXPECT_TRUE(at_reader.wait_for(1));
   EXPECT_EQ(at_reader.items().front().kind, TransportFaultKind::kIncompatible);
+  EXPECT_EQ(at_reader.items().front().detail,
+            "durability: offered volatile, requested transient local (process 'a')");
+  EXPECT_EQ(at_writer.items().front().detail,
+            "durability: offered volatile, requested transient local (process 'b')");
   EXPECT_EQ(b.status().front().incompatible, 1U);
   EXPECT_FALSE(writer->has_readers());
   a.on_fault({});
@@ -169,7 +173,7 @@ TEST(Faults, ComesAndGoesQuicklyAndOften) {
   for (std::size_t i = 0; i < 10; ++i) {
     std::optional<DdsTransport> transport(test_parameters("guest"));
     auto writer = transport->make_writer("text", string_type(), msgs::event_qos());
-    auto reader = transport->make_reader("image", image_type(), msgs::sensor_qos(),
+    auto reader = transport->make_reader("image", image_type(), msgs::reliable_stream_qos(),
                                          [](const graph::MessagePtr&) {});
     ASSERT_TRUE(eventually([&] { return writer->has_readers(); }));
     writer->write(make_string("hello"));

@@ -57,9 +57,9 @@ TEST_P(RoundTrip, AnImageOfSixMegabytesArrivesWhole) {
   DdsTransport a(test_parameters("a", GetParam()));
   DdsTransport b(test_parameters("b", GetParam()));
   Inbox<graph::MessagePtr> inbox;
-  const auto reader = b.make_reader("image", image_type(), msgs::sensor_qos(),
+  const auto reader = b.make_reader("image", image_type(), msgs::sensor_stream_qos(),
                                     [&](graph::MessagePtr message) { inbox.put(message); });
-  const auto writer = a.make_writer("image", image_type(), msgs::sensor_qos());
+  const auto writer = a.make_writer("image", image_type(), msgs::sensor_stream_qos());
   ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
   for (std::uint32_t i = 0; i < 3; ++i) {
     const auto image = make_image(6'000'000, i);
@@ -157,11 +157,11 @@ TEST(Transport, AFullQueueDropsTheOldestAndCounts) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   Inbox<std::uint32_t> inbox;
-  const auto reader = b.make_reader("image", image_type(), msgs::sensor_qos(),
+  const auto reader = b.make_reader("image", image_type(), msgs::sensor_stream_qos(),
                                     [&](const graph::MessagePtr& message) {
                                       inbox.put(static_cast<const Image*>(message.get())->height());
                                     });
-  const auto writer = a.make_writer("image", image_type(), msgs::sensor_qos(2));
+  const auto writer = a.make_writer("image", image_type(), msgs::sensor_stream_qos(2));
   ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
   constexpr std::uint32_t kImages = 300;
   const auto pixels = make_image(3'000'000, 1);

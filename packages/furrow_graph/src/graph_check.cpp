@@ -87,17 +87,18 @@ class Wiring {
   }
 
  private:
-  // DDS: what a reader asks for must not be more than what the writer offers.
-  static bool satisfies(const msgs::Qos& offered, const msgs::Qos& requested) {
-    return offered.reliability >= requested.reliability &&
-           offered.durability >= requested.durability;
+  /// Of reliability and durability. Inside a process nothing watches deadlines and leases.
+  static std::string incompatibility(const msgs::Qos& offered, msgs::Qos requested) {
+    requested.deadline = requested.liveliness_lease = Duration();
+    return msgs::incompatibility(offered, requested);
   }
 
   void check_offer(const ComponentSpec& component, const std::string& name,
                    const msgs::Qos& qos) const {
     const auto it = offers_.find(name);
     if (it == offers_.end()) return;
-    if (!satisfies(it->second.front(), qos) || !satisfies(qos, it->second.front())) {
+    const msgs::Qos& first = it->second.front();
+    if (!incompatibility(first, qos).empty() || !incompatibility(qos, first).empty()) {
       throw ConfigError(component.where, component.name,
                         "topic '" + name + "' is published with two different QoS");
     }
@@ -108,10 +109,9 @@ class Wiring {
     const auto it = offers_.find(name);
     if (it == offers_.end()) return;
     for (const msgs::Qos& offered : it->second) {
-      if (!satisfies(offered, qos)) {
-        throw ConfigError(
-            component.where, component.name,
-            "topic '" + name + "': the QoS asked for is more than the publisher offers");
+      if (const std::string text = incompatibility(offered, qos); !text.empty()) {
+        throw ConfigError(component.where, component.name,
+                          "topic '" + name + "': incompatible QoS: " + text);
       }
     }
   }

@@ -88,7 +88,7 @@ TEST(GraphCheck, QosMismatch) {
   registry.add(std::move(reader));
   ComponentClass writer{.name = "writer"};
   static const msgs::Topic plain{
-      "text", &msgs::message_type<std_msgs::msg::String>(), msgs::sensor_qos(), 0, "", ""};
+      "text", &msgs::message_type<std_msgs::msg::String>(), msgs::reliable_stream_qos(), 0, "", ""};
   struct Text {
     static const msgs::Topic& topic() { return plain; }
   };
@@ -98,8 +98,10 @@ TEST(GraphCheck, QosMismatch) {
   GraphSpec graph;
   graph.components = {spec("w", "writer"), spec("r", "reader")};
   graph.components[1].remaps = {{"robot_description", "text"}};
-  EXPECT_EQ(test::error_of("", [&] { check_graph(graph, registry); }),
-            "graph.yaml:1: r: topic 'text': the QoS asked for is more than the publisher offers");
+  EXPECT_EQ(
+      test::error_of("", [&] { check_graph(graph, registry); }),
+      "graph.yaml:1: r: topic 'text': incompatible QoS: durability: offered volatile, requested "
+      "transient local");
 }
 
 }  // namespace

@@ -6,7 +6,8 @@ namespace furrow::msgs {
 namespace {
 
 std::string qos_text(const Qos& qos) {
-  std::string text = qos.reliability == Reliability::kReliable ? "reliable" : "best effort";
+  std::string text(to_string(qos.reliability));
+  if (qos.accept_best_effort) text += ", best effort accepted";
   if (qos.durability == Durability::kTransientLocal) text += ", latched";
   text += ", depth " + std::to_string(qos.depth);
   const auto milliseconds = [](Duration duration) {

@@ -85,8 +85,8 @@ class DdsPlayer::Impl {
     }
     queued_.resize(writers_.size());
     if (player_.options().clock_hz > 0.0) {
-      clock_ =
-          transport.make_raw_writer("clock", msgs::dds_type_name(kClockType), msgs::sensor_qos(10));
+      clock_ = transport.make_raw_writer("clock", msgs::dds_type_name(kClockType),
+                                         msgs::sensor_stream_qos(10));
     }
     lateness_s_.reserve(kLatenessSamples);
     thread_ = std::thread([this] { run(); });

@@ -71,7 +71,7 @@ Result<WriteBenchmarkRun> record(const std::filesystem::path& folder,
     TopicDescription topic;
     topic.name = "camera/image";
     topic.type_name = "sensor_msgs/msg/Image";
-    topic.offered_qos = {msgs::sensor_qos()};
+    topic.offered_qos = {msgs::reliable_stream_qos()};
     const auto number = recorder.add_topic(topic);
     for (std::uint64_t i = 0; i < messages; ++i) {
       const Time time = Time() + Duration::milliseconds(static_cast<std::int64_t>(i));

@@ -14,24 +14,28 @@ namespace furrow::dds {
 
 enum class TransportFaultKind {
   kDeadlineMissed,      ///< a reader waited longer than its topic's deadline
-  kLivelinessLost,      ///< a matched writer outside this process fell silent
+  kLivelinessLost,      ///< a matched writer of another process fell silent
   kLivelinessRegained,  ///< and is back
-  kIncompatible,        ///< an endpoint of the same topic and type was refused for its QoS
+  kIncompatible,        ///< an endpoint of the topic does not match because of its QoS
 };
 struct TransportFault {
   TransportFaultKind kind = TransportFaultKind::kDeadlineMissed;
   std::string topic;
+  /// kIncompatible: "reliability: offered best effort, requested reliable (process 'camera')".
+  std::string detail;
 };
 
-/// What went on at one endpoint, for health reports.
+/// One endpoint, for health reports.
 struct EndpointStatus {
   std::string topic;
   bool writer = false;
-  int peers = 0;  ///< matched endpoints outside this process
+  int peers = 0;                ///< matched endpoints of other processes
+  int best_effort_writers = 0;  ///< of these, writers whose messages may get lost unnoticed
   graph::TransportCounters counters;
   std::uint64_t deadlines_missed = 0;
   std::uint64_t liveliness_losses = 0;
   std::uint64_t incompatible = 0;
+  std::string incompatibility;  ///< TransportFault::detail of the last one
 };
 
 /// One participant of a DDS domain: how a process reaches others. Topics are "rt/NAME" in DDS,

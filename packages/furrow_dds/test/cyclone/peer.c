@@ -1,7 +1,8 @@
 /* A Cyclone DDS program beside Furrow, until its standard input ends. It answers on
  * rt/cyclone/answer with odometry: to each image on rt/camera/image with its height, width and the
  * sum of its bytes as the position; to odometry on rt/localization/odometry with the position and
- * speed doubled.
+ * speed doubled, and on rt/cyclone/image, best effort as a camera driver, with an image of one pixel
+ * that has the frame of the odometry.
  *
  * usage: cyclone_peer DOMAIN */
 #include <dds/dds.h>
@@ -45,7 +46,15 @@ static void look_at_image(dds_entity_t writer, const Image* image) {
   answer(writer, image->header.frame_id, image->height, image->width, sum, 0.0);
 }
 
-static void look_at_odometry(dds_entity_t writer, const Odometry* odometry) {
+static void look_at_odometry(dds_entity_t writer, dds_entity_t camera, const Odometry* odometry) {
+  uint8_t pixel = 7;
+  Image image = {0};
+  image.header.frame_id = odometry->header.frame_id;
+  image.height = image.width = image.step = 1;
+  image.encoding = "mono8";
+  image.data._buffer = &pixel;
+  image.data._length = image.data._maximum = 1;
+  if (dds_write(camera, &image) < 0) fprintf(stderr, "cyclone_peer: not written\n");
   answer(writer, odometry->header.frame_id, 2.0 * odometry->pose.pose.position.x,
          2.0 * odometry->pose.pose.position.y, 2.0 * odometry->pose.pose.position.z,
          2.0 * odometry->twist.twist.linear.x);
@@ -70,6 +79,10 @@ int main(int argc, char** argv) {
   const dds_entity_t image_reader = check(dds_create_reader(participant, images, qos, NULL));
   const dds_entity_t odometry_reader = check(dds_create_reader(participant, odometry, qos, NULL));
   const dds_entity_t writer = check(dds_create_writer(participant, answers, qos, NULL));
+  const dds_entity_t camera_topic = check(dds_create_topic(
+      participant, &sensor_msgs_msg_dds__Image__desc, "rt/cyclone/image", NULL, NULL));
+  dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+  const dds_entity_t camera = check(dds_create_writer(participant, camera_topic, qos, NULL));
   dds_delete_qos(qos);
 
   struct pollfd input = {STDIN_FILENO, POLLIN, 0};
@@ -84,7 +97,7 @@ int main(int argc, char** argv) {
     samples[0] = NULL;
     count = dds_take(odometry_reader, samples, infos, kBatch, kBatch);
     for (int i = 0; i < count; ++i) {
-      if (infos[i].valid_data) look_at_odometry(writer, samples[i]);
+      if (infos[i].valid_data) look_at_odometry(writer, camera, samples[i]);
     }
     if (count > 0) dds_return_loan(odometry_reader, samples, count);
   }
