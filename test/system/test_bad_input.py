@@ -134,7 +134,7 @@ class BadInputTest(FurrowCase):
         for setting, part in (("planner.nokey=3", "nokey: unknown parameter"),
                               ("tracker.confirm_matches=-1", "out of range"),
                               ("tracker.confirm_matches=some", "integer"),
-                              ("nobody.key=1", "nobody: there is no such component"),
+                              ("other.key=1", "other: the graph has no such component"),
                               ("common.nokey=1", "nokey"),
                               ("common.length_m=0", "out of range"),
                               ("planner", "is not COMPONENT.KEY=VALUE")):

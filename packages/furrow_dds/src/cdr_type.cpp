@@ -8,10 +8,10 @@ namespace furrow::dds {
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
 namespace {
-// The first payloads of a pool are made this large; each grows to what it has to hold.
+// Size of the first payloads of a pool. Each grows to the size of its message.
 constexpr std::uint32_t kInitialPayloadBytes = 256;
 constexpr std::size_t kEncapsulationBytes = 4;
-// Smaller messages are not worth keeping the memory.
+// Messages below this size are not kept for reuse.
 constexpr std::size_t kReuseBytes = 65536;
 }  // namespace
 
@@ -35,7 +35,7 @@ std::shared_ptr<void> IncomingMessage::make_message() {
     if (kept.message.use_count() > 1) {
       continue;
     }
-    // One that has to grow would clear what is then written over.
+    // A message that has to grow would first clear its memory.
     if (kept.size == size_) {
       best = &kept;
       break;
@@ -50,7 +50,7 @@ std::shared_ptr<void> IncomingMessage::make_message() {
   if (best->message == nullptr) {
     best->message = type_.create();
   }
-  // What the last holder read happened before we write.
+  // The last holder has read before we write.
   std::atomic_thread_fence(std::memory_order_acquire);
   best->size = size_;
   return best->message;
@@ -87,7 +87,7 @@ bool CdrType::serialize(void* data, SerializedPayload_t* payload) {
 bool CdrType::deserialize(SerializedPayload_t* payload, void* data) {
   const auto* in = reinterpret_cast<const std::byte*>(payload->data);
   static_cast<CdrSample*>(data)->deserialize({in, payload->length});
-  return true;  // what is malformed is counted by the reader; here it would stay in the history
+  return true;  // the reader counts malformed samples; false would keep them in the history
 }
 
 std::function<uint32_t()> CdrType::getSerializedSizeProvider(void* data) {

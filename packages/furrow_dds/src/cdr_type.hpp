@@ -13,12 +13,12 @@
 
 namespace furrow::dds {
 
-/// What stands behind the void pointers that Fast DDS hands to a CdrType.
+/// The object behind the void pointers that Fast DDS passes to a CdrType.
 class CdrSample {
  public:
   virtual ~CdrSample() = default;
   [[nodiscard]] virtual std::size_t size() const = 0;
-  /// Bytes written; 0 when it failed.
+  /// Bytes written; 0 if it failed.
   [[nodiscard]] virtual std::size_t serialize(std::span<std::byte> out) const = 0;
   virtual void deserialize(std::span<const std::byte> in) = 0;
 };
@@ -37,13 +37,12 @@ class OutgoingMessage final : public CdrSample {
   std::size_t size_;
 };
 
-/// Reads into a new message, or, when it is large, into one that it made before, if possible for
-/// the same size, and that nobody holds any more: allocating and clearing a camera image costs as
-/// much as copying it.
+/// Deserializes into a new message. A large one reuses an earlier message without other holders,
+/// preferably of the same size: allocating and clearing an image costs as much as copying it.
 class IncomingMessage final : public CdrSample {
  public:
   explicit IncomingMessage(const msgs::MessageType& type) : type_(type) {}
-  /// Null when nothing came or it was malformed.
+  /// Null if there is no message, or it was malformed.
   [[nodiscard]] graph::MessagePtr take() { return std::exchange(message_, nullptr); }
   [[nodiscard]] std::size_t size() const override { return size_; }
   [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
@@ -87,7 +86,7 @@ class IncomingBytes final : public CdrSample {
   std::vector<std::byte> bytes_;
 };
 
-/// A sample that is let go unread.
+/// A sample that is ignored.
 class NoData final : public CdrSample {
  public:
   [[nodiscard]] std::size_t size() const override { return 0; }
@@ -95,8 +94,8 @@ class NoData final : public CdrSample {
   void deserialize(std::span<const std::byte>) override {}
 };
 
-/// A type that Fast DDS knows by its name only: samples are CdrSample. Typed and raw endpoints of a
-/// topic share it, as a participant takes one implementation for a name.
+/// A type that Fast DDS knows by its name only; samples are CdrSample. Typed and raw endpoints of a
+/// topic share it, because a participant accepts one implementation for a name.
 class CdrType final : public eprosima::fastdds::dds::TopicDataType {
  public:
   explicit CdrType(const std::string& type_name);

@@ -39,7 +39,7 @@ msgs::Qos from_dds_qos(const EndpointQos& in) {
   qos.reliability = in.m_reliability.kind == fdds::RELIABLE_RELIABILITY_QOS
                         ? msgs::Reliability::kReliable
                         : msgs::Reliability::kBestEffort;
-  // Persistent kinds keep at least what transient local does.
+  // The persistent kinds include transient local.
   qos.durability = in.m_durability.kind == fdds::VOLATILE_DURABILITY_QOS
                        ? msgs::Durability::kVolatile
                        : msgs::Durability::kTransientLocal;

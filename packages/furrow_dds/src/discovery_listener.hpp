@@ -12,7 +12,7 @@ namespace furrow::dds {
 
 [[nodiscard]] Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);
 
-/// "rt/NAME" and NAME; a name that begins with "//" goes without the prefix.
+/// Converts between "NAME" and "rt/NAME". A name that begins with "//" has no prefix in DDS.
 [[nodiscard]] std::string dds_topic_name(const std::string& topic);
 [[nodiscard]] std::string topic_name(const std::string& dds_name);
 

@@ -10,8 +10,8 @@ using eprosima::fastrtps::Duration_t;
 namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-// A lost fragment is asked for and sent again within a few of these; Fast DDS's defaults (3 s
-// between heartbeats) would stall a topic for seconds.
+// A lost fragment is requested and sent again within a few of these periods. Fast DDS's default of
+// 3 s between heartbeats would stall a topic for seconds.
 constexpr Duration kHeartbeatPeriod = Duration::milliseconds(20);
 constexpr Duration kNackResponseDelay = Duration::milliseconds(1);
 constexpr Duration kHeartbeatResponseDelay = Duration::milliseconds(1);
@@ -44,7 +44,7 @@ void set_common(const msgs::Qos& qos, EndpointQos& out) {
     out.liveliness().announcement_period =
         to_dds(Duration::nanoseconds(qos.liveliness_lease.count_ns() / 3));
   }
-  // Slots of shared histories are recycled while they are read.
+  // Fast DDS recycles slots of shared histories while they are read.
   out.data_sharing().off();
   out.endpoint().history_memory_policy =
       eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
@@ -68,7 +68,7 @@ Duration from_dds(const Duration_t& duration) {
 fdds::DataWriterQos writer_qos(const msgs::Qos& qos) {
   fdds::DataWriterQos out = fdds::DATAWRITER_QOS_DEFAULT;
   set_common(qos, out);
-  // The sending threads are ours, so that large and small messages do not share one.
+  // Our own threads send, so that large and small messages do not share a thread.
   out.publish_mode().kind = fdds::SYNCHRONOUS_PUBLISH_MODE;
   auto& times = out.reliable_writer_qos().times;
   times.initialHeartbeatDelay = to_dds(kNackResponseDelay);

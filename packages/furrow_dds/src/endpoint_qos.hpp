@@ -8,7 +8,7 @@
 namespace furrow::dds {
 
 [[nodiscard]] eprosima::fastrtps::Duration_t to_dds(Duration duration);
-/// Zero for infinite.
+/// Zero if the duration is infinite.
 [[nodiscard]] Duration from_dds(const eprosima::fastrtps::Duration_t& duration);
 
 [[nodiscard]] eprosima::fastdds::dds::DataWriterQos writer_qos(const msgs::Qos& qos);

@@ -46,8 +46,8 @@ void wait_for_interfaces(const std::vector<std::string>& addresses,
     });
     if (missing == addresses.end()) return;
     if (std::chrono::steady_clock::now() >= deadline) {
-      throw ConfigError("interfaces: no network interface that is running has the address '" +
-                        *missing + "'");
+      throw ConfigError("interfaces: no running network interface has the address '" + *missing +
+                        "'");
     }
     std::this_thread::sleep_for(kPause);
   }

@@ -25,17 +25,17 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 namespace {
 
-// Processes of one host that static peers are asked for; each has a port of its own.
+// Static peers are asked on the ports of this many processes per host.
 constexpr std::uint32_t kMaxProcessesPerHost = 32;
-// 64 kB fragments, and those of several images may wait in a port's queue.
+// In fragments of 64 kB; a port's queue must hold those of several images.
 constexpr std::uint32_t kShmPortQueue = 1024;
 
 bool has(const std::vector<std::string>& list, const char* entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
 }
 
-/// For discovery and all but large data: what is said must arrive even where a process died with
-/// its shared memory open. Ports left at 0 become those of the standard.
+/// Discovery and small messages use UDP, so that the shared memory of a crashed process cannot
+/// block them. Port 0 means the port of the RTPS standard.
 void listen_on_udp(fdds::WireProtocolConfigQos& protocol) {
   rtps::Locator_t any;
   any.kind = LOCATOR_KIND_UDPv4;
@@ -51,7 +51,7 @@ void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos&
   qos.transport().use_builtin_transports = false;
   for (const std::string& name : parameters.transports) {
     if (name != "shm" && name != "udp") {
-      throw ConfigError("transports: '" + name + "' is neither \"shm\" nor \"udp\"");
+      throw ConfigError("transports: '" + name + "' must be \"shm\" or \"udp\"");
     }
   }
   if (has(parameters.transports, "shm")) {
@@ -79,7 +79,7 @@ void set_transports(const DdsParameters& parameters, fdds::DomainParticipantQos&
     listen_on_udp(qos.wire_protocol());
   }
   if (qos.transport().user_transports.empty()) {
-    throw ConfigError("transports: empty");
+    throw ConfigError("transports: must name \"shm\", \"udp\" or both");
   }
 }
 
@@ -94,19 +94,19 @@ void set_discovery(const DdsParameters& parameters, fdds::DomainParticipantQos& 
   const bool udp = has(parameters.transports, "udp");
   if (parameters.discovery == "multicast") {
     if (!parameters.peers.empty()) {
-      throw ConfigError("peers: given, but discovery is \"multicast\"");
+      throw ConfigError("peers: must be empty with discovery \"multicast\"");
     }
     return;
   }
   if (!udp || parameters.peers.empty()) {
     throw ConfigError("discovery: \"" + parameters.discovery +
-                      "\" needs peers and \"udp\" among the transports");
+                      "\" requires peers, and \"udp\" among the transports");
   }
   if (parameters.discovery == "static_peers") {
     for (const std::string& peer : parameters.peers) {
       builtin.initialPeersList.push_back(udp_locator(peer, 0));
     }
-    // Processes of this host are peers too.
+    // Other processes of this host are peers too.
     if (parameters.interfaces.empty()) {
       builtin.initialPeersList.push_back(udp_locator("127.0.0.1", 0));
     }
@@ -116,12 +116,13 @@ void set_discovery(const DdsParameters& parameters, fdds::DomainParticipantQos& 
     return;
   }
   if (parameters.discovery != "discovery_server") {
-    throw ConfigError("discovery: '" + parameters.discovery + "' is unknown");
+    throw ConfigError("discovery: '" + parameters.discovery +
+                      "' must be \"multicast\", \"static_peers\" or \"discovery_server\"");
   }
   if (parameters.peers.size() > kMaxDiscoveryServers) {
-    throw ConfigError("peers: more than 256 discovery servers");
+    throw ConfigError("peers: at most 256 discovery servers");
   }
-  // Also what this process does not read itself, for recorders and tools.
+  // Learns of all topics, not only its own, for recorders and tools.
   builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SUPER_CLIENT;
   builtin.discovery_config.discoveryServer_client_syncperiod = to_dds(Duration::milliseconds(100));
   for (std::size_t id = 0; id < parameters.peers.size(); ++id) {
@@ -144,7 +145,8 @@ rtps::Locator_t udp_locator(const std::string& address, std::uint32_t default_po
     const char* last = address.data() + address.size();
     const auto [end, failure] = std::from_chars(first, last, port);
     if (failure != std::errc() || end != last || port == 0 || port > 65535) {
-      throw ConfigError("address '" + address + "' has no port from 1 to 65535 behind its colon");
+      throw ConfigError("address '" + address +
+                        "' must have a port from 1 to 65535 after the colon");
     }
   }
   if (!rtps::IPLocator::isIPv4(host)) {
@@ -169,7 +171,7 @@ fdds::DomainParticipantQos participant_qos(const DdsParameters& parameters) {
   qos.name(parameters.process_name);
   const std::string user_data = process_user_data();
   qos.user_data().setValue({user_data.begin(), user_data.end()});
-  // Each sending thread holds one while it sends; none waits for another's.
+  // Each sending thread has its own buffer and waits for no other thread.
   qos.allocation().send_buffers.dynamic = true;
   set_transports(parameters, qos);
   set_discovery(parameters, qos);

@@ -10,12 +10,12 @@
 
 namespace furrow::dds {
 
-/// Throws ConfigError on parameters out of range and malformed addresses.
+/// Throws ConfigError if a parameter is out of range or an address is malformed.
 [[nodiscard]] eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const DdsParameters& parameters);
 
-/// Where a reader of this type ("sensor_msgs::msg::dds_::Image_") listens; empty: where its
-/// participant does. One with locators of its own must get them anew at each call.
+/// The locators of a reader of this type ("sensor_msgs::msg::dds_::Image_"); empty: those of its
+/// participant. Each reader needs its own call, because its ports are unique.
 [[nodiscard]] eprosima::fastdds::rtps::LocatorList reader_locators(const DdsParameters& parameters,
                                                                    const std::string& type_name);
 
@@ -27,9 +27,9 @@ inline constexpr std::int64_t kMaxDiscoveryServers = 256;
                                                               std::uint32_t default_port);
 [[nodiscard]] eprosima::fastrtps::rtps::GuidPrefix_t discovery_server_prefix(std::uint8_t id);
 
-/// What a participant of ours tells of its process, as user data "key=value;".
+/// The user data of our participants, "key=value;": host and process id.
 [[nodiscard]] std::string process_user_data();
-/// The value behind `key`, or empty.
+/// The value of `key`, or "".
 [[nodiscard]] std::string user_data_value(const std::string& user_data, const std::string& key);
 
 }  // namespace furrow::dds

@@ -36,9 +36,8 @@ class SendThread {
   std::thread thread_;
 };
 
-/// Sends the messages of all queues. A topic with large messages has its queue served by a thread
-/// of its own kind, so that an image does not delay a command. A queue belongs to one thread at a
-/// time, which keeps its order.
+/// Sends the messages of all queues. Queues with large messages have a second thread, so that an
+/// image does not delay a command. A queue belongs to one thread at a time, which keeps its order.
 struct Sender {
   explicit Sender(std::size_t threshold_bytes) : bulk_threshold_bytes(threshold_bytes) {}
 

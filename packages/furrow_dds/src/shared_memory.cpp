@@ -29,7 +29,7 @@ constexpr std::size_t kSegmentDigits = 16;
 
 enum class Kind { kOther, kSegment, kPort };
 
-/// Of a name without prefix and suffix; kPort only for ports that are never used again.
+/// The kind of a name without prefix and suffix; kPort only for ports of own_shm_locators().
 Kind kind_of(std::string_view name) {
   if (name.starts_with(kPortPrefix)) {
     name.remove_prefix(kPortPrefix.size());
@@ -43,8 +43,8 @@ Kind kind_of(std::string_view name) {
   return segment ? Kind::kSegment : Kind::kOther;
 }
 
-/// Fast DDS holds a lock on the file as long as the process lives.
-bool nobody_holds(const fs::path& lock_file) {
+/// Fast DDS locks the file as long as the process lives.
+bool is_unlocked(const fs::path& lock_file) {
   const int file = ::open(lock_file.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;
   const bool free = ::flock(file, LOCK_EX | LOCK_NB) == 0;
@@ -58,7 +58,7 @@ bool is_newer(const fs::path& file, fs::file_time_type than) {
   return !unread && time >= than;
 }
 
-/// A port without a lock was made anew by a process that wrote to it when its reader was dead.
+/// A port without a lock file was created by a process that wrote to a dead reader.
 bool is_dead(const fs::path& folder, const std::string& name, fs::file_time_type newest) {
   const Kind kind = kind_of(std::string_view(name).substr(kPrefix.size()));
   if (kind == Kind::kOther) return false;
@@ -66,7 +66,7 @@ bool is_dead(const fs::path& folder, const std::string& name, fs::file_time_type
   if (is_newer(folder / name, newest) || is_newer(lock_file, newest)) return false;
   std::error_code unread;
   if (!fs::exists(lock_file, unread)) return !unread && kind == Kind::kPort;
-  return nobody_holds(lock_file);
+  return is_unlocked(lock_file);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ LocatorList own_shm_locators(const SharedMemTransportDescriptor& transport) {
   std::random_device random;
   std::uniform_int_distribution<std::uint32_t> port(kFirstOwnShmPort, 0x7fffffff);
   LocatorList own;
-  // Only the transport knows what its locators call this host.
+  // Only a transport knows the name of this host in its locators.
   const std::unique_ptr<TransportInterface> maker(transport.create_transport());
   if (maker != nullptr) maker->getDefaultUnicastLocators(own, port(random));
   return own;

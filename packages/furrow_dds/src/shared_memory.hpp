@@ -10,19 +10,18 @@
 
 namespace furrow::dds {
 
-/// Where a reader listens in shared memory: on a port that no other one ever had. Fast DDS
-/// takes away the memory of a port whose last owner has died, and makes it anew for the next owner,
-/// but processes that had it open go on to write into what was taken away: on a port of its own
-/// nobody has such a past. Empty where the host has no shared memory.
+/// A shared-memory port for one reader that no other reader ever used. Fast DDS replaces the memory
+/// of a port whose owner died; a process with the port open goes on writing into the old memory. No
+/// process has an unused port open. Empty if the host has no shared memory.
 [[nodiscard]] eprosima::fastdds::rtps::LocatorList own_shm_locators(
     const eprosima::fastdds::rtps::SharedMemTransportDescriptor& transport);
 
-/// The smallest port that own_shm_locators() gives; below are those of the RTPS standard.
+/// The smallest port of own_shm_locators(). Smaller ones belong to the RTPS standard.
 inline constexpr std::uint32_t kFirstOwnShmPort = 0x10000;
 
-/// Removes what processes left in `folder` when they were killed: segments whose lock file nobody
-/// holds, and ports of own_shm_locators() that no reader holds; older than `age`, so that nobody is
-/// just making them. Returns how many. What cannot be read or removed stays.
+/// Removes the shared memory of killed processes from `folder`: segments, and ports of
+/// own_shm_locators(), without a locked file. They must be older than `age`, so that no process is
+/// just creating them. Returns their number. Files that cannot be read or removed stay.
 std::size_t remove_dead_shared_memory(const std::filesystem::path& folder,
                                       std::chrono::seconds age);
 

@@ -10,7 +10,7 @@
 
 namespace furrow::dds {
 
-/// A writer of messages of `type`, or, where that is null, of std::vector<std::byte>.
+/// Writes messages of `type`; if that is null, std::vector<std::byte> in CDR form.
 class Writer final : public Endpoint, private MessageSink {
  public:
   Writer(Participant& participant, const std::string& topic, const std::string& type_name,

@@ -39,7 +39,7 @@ bool holds(const Image& image, std::size_t pixels, std::uint8_t value) {
   return image.data() == std::vector<std::uint8_t>(pixels, value);
 }
 
-TEST(IncomingMessage, SizesInTurnEachFindTheMemoryTheyHadBefore) {
+TEST(IncomingMessage, ReusesAMessageOfTheSameSize) {
   IncomingMessage incoming(image_type());
   const Image* large = receive(incoming, kLarge, 1).get();
   const Image* larger = receive(incoming, kLarger, 2).get();
@@ -50,7 +50,7 @@ TEST(IncomingMessage, SizesInTurnEachFindTheMemoryTheyHadBefore) {
   }
 }
 
-TEST(IncomingMessage, WhatIsHeldIsNotWrittenOver) {
+TEST(IncomingMessage, DoesNotReuseAMessageWithAHolder) {
   IncomingMessage incoming(image_type());
   std::vector<ImagePtr> held;
   std::set<const Image*> distinct;
@@ -64,7 +64,7 @@ TEST(IncomingMessage, WhatIsHeldIsNotWrittenOver) {
   }
 }
 
-TEST(IncomingMessage, MoreSizesThanAreKeptAreReadRightToo) {
+TEST(IncomingMessage, ReadsMoreSizesThanItKeeps) {
   IncomingMessage incoming(image_type());
   for (std::uint8_t i = 0; i < 30; ++i) {
     const std::size_t pixels = kLarge + std::size_t{50'000} * (i % 7);
@@ -72,7 +72,7 @@ TEST(IncomingMessage, MoreSizesThanAreKeptAreReadRightToo) {
   }
 }
 
-TEST(IncomingMessage, AMalformedOneIsNoneAndTheNextIsRead) {
+TEST(IncomingMessage, ReadsTheNextMessageAfterAMalformedOne) {
   IncomingMessage incoming(image_type());
   std::vector<std::byte> cut = cdr_form(kLarge, 1);
   cut.resize(cut.size() / 2);

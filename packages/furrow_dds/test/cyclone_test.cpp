@@ -18,7 +18,7 @@ namespace {
 using nav_msgs::msg::Odometry;
 namespace topics = msgs::topics;
 
-/// Another vendor's DDS in a program of its own, on loopback, without multicast.
+/// A process with another vendor's DDS, on loopback, without multicast.
 class CyclonePeer {
  public:
   CyclonePeer() {
@@ -75,8 +75,7 @@ class CycloneTest : public ::testing::Test {
     return writer;
   }
 
-  /// Both sides find each other in their own time, and what is sent between is nobody's: repeats
-  /// the message until it is answered.
+  /// Repeats the message until it is answered: one side may match earlier than the other.
   std::optional<Odometry> answer_to(graph::TransportWriter& out, const graph::MessagePtr& message,
                                     const std::string& frame) {
     std::optional<Odometry> found;
@@ -102,9 +101,9 @@ class CycloneTest : public ::testing::Test {
   std::optional<CyclonePeer> peer_;
 };
 
-TEST_F(CycloneTest, ReadsImagesOfFurrow) {
+TEST_F(CycloneTest, CycloneReadsOurImages) {
   const auto out = writer(topics::CameraImage::topic());
-  // One that goes in a packet, and one of 1280 x 960 in three colours.
+  // One that fits into a packet, and one of 1280 x 960 pixels in three colours.
   for (const std::size_t bytes : {300U, 3'686'400U}) {
     auto image = std::make_shared<Image>(*make_image(bytes, 5));
     const std::string frame = "camera " + std::to_string(bytes);
@@ -119,7 +118,7 @@ TEST_F(CycloneTest, ReadsImagesOfFurrow) {
   }
 }
 
-TEST_F(CycloneTest, ACameraThatOffersBestEffortIsHeard) {
+TEST_F(CycloneTest, ReadsACameraThatOffersBestEffort) {
   Inbox<graph::MessagePtr> images;
   const msgs::Topic& topic = topics::CameraImage::topic();
   const auto camera =
@@ -138,7 +137,7 @@ TEST_F(CycloneTest, ACameraThatOffersBestEffortIsHeard) {
   EXPECT_EQ(image.data(), std::vector<std::uint8_t>{7});
 }
 
-TEST_F(CycloneTest, ReadsOdometryOfFurrowAndFeedsItOdometry) {
+TEST_F(CycloneTest, ExchangesOdometryWithCyclone) {
   const auto out = writer(topics::RobotOdometry::topic());
   auto odometry = std::make_shared<Odometry>();
   odometry->header().frame_id("field");

@@ -21,7 +21,7 @@ const TopicInfo* find_topic(const DiscoverySnapshot& snapshot, const std::string
   return found == snapshot.topics.end() ? nullptr : &*found;
 }
 
-TEST(Discovery, TellsProcessesTopicsTypesAndQos) {
+TEST(Discovery, ListsProcessesTopicsTypesAndQos) {
   DdsTransport watcher(test_parameters("watcher"));
   std::optional<DdsTransport> robot(test_parameters("robot"));
   msgs::Qos qos = msgs::latched_qos();
@@ -66,7 +66,7 @@ TEST(Discovery, TellsProcessesTopicsTypesAndQos) {
   EXPECT_EQ(find_topic(watcher.discovery(), "image"), nullptr);
 }
 
-TEST(Discovery, ListsWhatTheProcessItselfHas) {
+TEST(Discovery, ListsTheEndpointsOfTheOwnProcess) {
   DdsTransport transport(test_parameters("alone"));
   const auto writer = transport.make_writer("plan", string_type(), msgs::latched_qos());
   ASSERT_TRUE(eventually([&] { return find_topic(transport.discovery(), "plan") != nullptr; }));
@@ -88,17 +88,17 @@ TEST(Discovery, StaticPeersFindEachOther) {
   EXPECT_TRUE(eventually([&] { return find_process(b.discovery(), "a") != nullptr; }));
 }
 
-TEST(Discovery, StaticPeersOfOneHostNeedNotListEachOther) {
+TEST(Discovery, StaticPeersOfOneHostFindEachOtherUnlisted) {
   auto parameters = test_parameters("a");
   parameters.discovery = "static_peers";
-  parameters.peers = {"127.0.0.1:9"};  // nobody is there
+  parameters.peers = {"127.0.0.1:9"};  // no process listens there
   DdsTransport a(parameters);
   parameters.process_name = "b";
   DdsTransport b(parameters);
   EXPECT_TRUE(eventually([&] { return find_process(a.discovery(), "b") != nullptr; }));
 }
 
-TEST(Discovery, ADiscoveryServerBringsProcessesTogether) {
+TEST(Discovery, ProcessesFindEachOtherByADiscoveryServer) {
   auto parameters = test_parameters("a");
   const std::string address = "127.0.0.1:" + std::to_string(20000 + getpid() % 10000);
   parameters.discovery = "discovery_server";
@@ -114,7 +114,7 @@ TEST(Discovery, ADiscoveryServerBringsProcessesTogether) {
   const auto writer = a.make_writer("text", string_type(), msgs::latched_qos());
   writer->write(make_string("by the server"));
   EXPECT_TRUE(inbox.wait_for(1));
-  // Also who has no endpoint of a topic knows of it.
+  // A process without an endpoint of a topic also knows the topic.
   EXPECT_TRUE(eventually([&] { return find_topic(watcher.discovery(), "text") != nullptr; }));
 }
 
@@ -124,7 +124,7 @@ TEST(Discovery, ADiscoveryServerRefusesBadAddresses) {
   EXPECT_THROW(DiscoveryServer(0, "127.0.0.1", 256), ConfigError);
 }
 
-TEST(Discovery, DomainsAreApart) {
+TEST(Discovery, DomainsAreSeparate) {
   auto parameters = test_parameters("here");
   DdsTransport here(parameters);
   DdsTransport beside(test_parameters("beside"));

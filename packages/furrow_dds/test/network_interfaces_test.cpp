@@ -7,14 +7,14 @@
 namespace furrow::dds {
 namespace {
 
-TEST(NetworkInterfaces, LoopbackIsThere) {
+TEST(NetworkInterfaces, FindsLoopback) {
   EXPECT_NO_THROW(wait_for_interfaces({"127.0.0.1"}, std::chrono::milliseconds(0)));
   EXPECT_NO_THROW(wait_for_interfaces({}, std::chrono::milliseconds(0)));
 }
 
-TEST(NetworkInterfaces, AnAddressThatNobodyHasIsNamed) {
+TEST(NetworkInterfaces, NamesAMissingAddress) {
   try {
-    // Of the block for documentation, RFC 5737.
+    // An address for documentation, RFC 5737.
     wait_for_interfaces({"127.0.0.1", "192.0.2.7"}, std::chrono::milliseconds(50));
     FAIL() << "192.0.2.7 was found";
   } catch (const ConfigError& error) {

@@ -18,7 +18,7 @@ TEST(DdsParameters, LoadFromGivenValues) {
   EXPECT_EQ(parameters.interfaces, std::vector<std::string>{"127.0.0.1"});
 }
 
-TEST(DdsParameters, BadOnesAreRefusedAtConstruction) {
+TEST(DdsParameters, BadValuesAreRefusedAtConstruction) {
   using Change = std::function<void(DdsParameters&)>;
   const std::vector<std::pair<const char*, Change>> cases = {
       {"domain", [](DdsParameters& p) { p.domain_id = 233; }},

@@ -1,4 +1,4 @@
-// dds_test_peer DOMAIN: writes "alive" a hundred times a second for as long as it runs.
+// dds_test_peer DOMAIN: writes "alive" a hundred times a second until it is stopped.
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   if (argc != 2) {
     return 2;
   }
-  // Shared memory would stay behind when the process is killed.
+  // A killed process would leave its shared memory.
   furrow::dds::DdsParameters parameters = furrow::dds::test_parameters("peer", {"udp"});
   parameters.domain_id = std::strtol(argv[1], nullptr, 10);
   furrow::dds::DdsTransport transport(parameters);

@@ -42,7 +42,7 @@ TEST(Raw, ReadsTheCdrFormOfATypedWriter) {
   EXPECT_EQ(topic->writers.front().guid, raw.writer);
 }
 
-TEST(Raw, WritesWhatATypedReaderReads) {
+TEST(Raw, WritesForATypedReader) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   StringInbox inbox;
@@ -57,7 +57,7 @@ TEST(Raw, WritesWhatATypedReaderReads) {
   EXPECT_EQ(inbox.items(), std::vector<std::string>{"from bytes"});
 }
 
-TEST(Raw, CarriesTypesItWasNotCompiledWith) {
+TEST(Raw, CarriesTypesUnknownAtCompileTime) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   Inbox<RawMessage> inbox;

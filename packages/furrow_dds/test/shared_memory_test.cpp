@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using eprosima::fastdds::rtps::LocatorList;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 
-TEST(SharedMemory, EveryReaderGetsAPortOfItsOwn) {
+TEST(SharedMemory, EveryReaderGetsItsOwnPort) {
   const SharedMemTransportDescriptor transport;
   std::set<std::uint32_t> ports;
   for (int i = 0; i < 100; ++i) {
@@ -56,17 +56,17 @@ class DeadSharedMemory : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(DeadSharedMemory, OnlyWhatNobodyHoldsIsRemoved) {
-  make("fastrtps_0123456789abcdef");  // of a process that was killed
+TEST_F(DeadSharedMemory, RemovesOnlyUnlockedFiles) {
+  make("fastrtps_0123456789abcdef");  // of a killed process
   make("fastrtps_port200000");
   std::ofstream(folder_ / "sem.fastrtps_port200000_mutex") << "mutex";
-  make("fastrtps_port300000");  // made anew by one that wrote to it, without a lock
+  make("fastrtps_port300000");  // created by a writer, without a lock
   fs::remove(folder_ / "fastrtps_port300000_el");
-  make("fastrtps_00000000000000aa");  // a segment that nobody has locked yet
+  make("fastrtps_00000000000000aa");  // a segment before its lock
   fs::remove(folder_ / "fastrtps_00000000000000aa_el");
   make("fastrtps_fedcba9876543210");  // held below
   make("fastrtps_port400000");        // held below
-  make("fastrtps_port7411");          // of the standard's ports: it may be used again
+  make("fastrtps_port7411");          // a port of the RTPS standard: may be used again
   make("fastrtps_port200000x");
   make("fastrtps_0123");
   make("other_0123456789abcdef");
@@ -92,7 +92,7 @@ TEST_F(DeadSharedMemory, OnlyWhatNobodyHoldsIsRemoved) {
   ::close(port);
 }
 
-TEST_F(DeadSharedMemory, AFolderThatIsNotThereHoldsNothing) {
+TEST_F(DeadSharedMemory, AMissingFolderHoldsNothing) {
   EXPECT_EQ(remove_dead_shared_memory(folder_ / "nothing", std::chrono::seconds(0)), 0U);
 }
 

@@ -28,7 +28,7 @@ inline DdsParameters test_parameters(const std::string& name,
   return parameters;
 }
 
-/// Polls `condition`, for what has no event of its own: matches and counters.
+/// Polls `condition`, for changes without an event: matches and counters.
 inline bool eventually(const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   std::mutex mutex;
@@ -43,7 +43,7 @@ inline bool eventually(const std::function<bool()>& condition) {
   return true;
 }
 
-/// What a reader got, in order.
+/// The messages that a reader received, in order.
 template <class T>
 class Inbox {
  public:
@@ -100,7 +100,7 @@ inline msgs::Qos watched_qos() {
   return qos;
 }
 
-/// An image of `bytes` whose content follows from `seed`.
+/// An image of `bytes` with random content by `seed`.
 inline std::shared_ptr<const Image> make_image(std::size_t bytes, std::uint32_t seed) {
   auto image = std::make_shared<Image>();
   image->height(1);

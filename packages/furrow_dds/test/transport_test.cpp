@@ -12,7 +12,7 @@ namespace {
 
 using Transports = std::vector<std::string>;
 
-// Participants of one process would hand messages to each other without a transport.
+// Participants of one process would deliver messages to each other without a transport.
 class SeparateParticipants : public ::testing::Environment {
  public:
   void SetUp() override {
@@ -47,7 +47,7 @@ TEST_P(RoundTrip, SmallMessagesArriveInOrder) {
   EXPECT_TRUE(a.flush(Duration::seconds(5)));
   EXPECT_EQ(writer->counters().messages, expected.size());
   EXPECT_EQ(reader->counters().messages, expected.size());
-  // DDS pads each to four bytes.
+  // DDS pads each message to four bytes.
   EXPECT_GE(reader->counters().bytes, writer->counters().bytes);
   EXPECT_LE(reader->counters().bytes, writer->counters().bytes + 3 * expected.size());
   EXPECT_EQ(reader->counters().dropped, 0U);
@@ -69,7 +69,7 @@ TEST_P(RoundTrip, AnImageOfSixMegabytesArrivesWhole) {
   }
 }
 
-TEST(Transport, AMessageThatIsHeldIsNotWrittenOver) {
+TEST(Transport, AMessageWithAHolderIsNotReused) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   Inbox<graph::MessagePtr> held;
@@ -88,7 +88,7 @@ TEST(Transport, AMessageThatIsHeldIsNotWrittenOver) {
   }
 }
 
-TEST(Transport, AWriterHasNoReadersUntilOneIsOutside) {
+TEST(Transport, AWriterCountsReadersOfOtherProcessesOnly) {
   DdsTransport a(test_parameters("a"));
   StringInbox own;
   const auto own_reader = a.make_reader("text", string_type(), msgs::event_qos(), own.handler());
@@ -153,7 +153,7 @@ TEST(Transport, ALateJoinerGetsTheLatchedMessage) {
   }
 }
 
-TEST(Transport, AFullQueueDropsTheOldestAndCounts) {
+TEST(Transport, AFullQueueDropsAndCountsTheOldestMessage) {
   DdsTransport a(test_parameters("a"));
   DdsTransport b(test_parameters("b"));
   Inbox<std::uint32_t> inbox;
@@ -167,7 +167,7 @@ TEST(Transport, AFullQueueDropsTheOldestAndCounts) {
   const auto pixels = make_image(3'000'000, 1);
   std::vector<graph::MessagePtr> images;
   for (std::uint32_t i = 1; i <= kImages; ++i) {
-    // Large only at first: that keeps the sender busy while the rest piles up.
+    // Two large images keep the sender busy while the others fill the queue.
     auto image = i <= 2 ? std::make_shared<Image>(*pixels) : std::make_shared<Image>();
     image->height(i);
     images.push_back(image);
@@ -205,7 +205,7 @@ TEST(Transport, OneProcessCannotHaveATopicWithTwoTypes) {
   EXPECT_THROW((void)a.make_writer("topic", image_type(), msgs::event_qos()), ConfigError);
 }
 
-TEST(Transport, WhatWaitsIsDeliveredBeforeAWriterGoes) {
+TEST(Transport, WaitingMessagesAreDeliveredBeforeAWriterIsDestroyed) {
   DdsTransport b(test_parameters("b"));
   StringInbox inbox;
   const auto reader = b.make_reader("text", string_type(), msgs::event_qos(), inbox.handler());

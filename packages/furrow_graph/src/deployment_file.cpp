@@ -12,7 +12,7 @@ namespace {
 bool flag(const YamlSource& source, const YAML::Node& node, const std::string& key) {
   const ParameterValue value = YamlSource::value(node);
   if (const bool* yes = std::get_if<bool>(&value)) return *yes;
-  throw ConfigError(source.where(node), key, "is neither true nor false");
+  throw ConfigError(source.where(node), key, "must be true or false");
 }
 
 ProcessSpec read_process(const YamlSource& source, const std::string& name,
@@ -48,7 +48,7 @@ void check_hosts(const DeploymentSpec& deployment) {
     if (std::ranges::find(deployment.hosts, process.host, &HostSpec::name) ==
         deployment.hosts.end()) {
       throw ConfigError(process.where, process.name + ".host",
-                        "'" + process.host + "' is not among the hosts");
+                        "'" + process.host + "' is not one of the hosts");
     }
   }
 }
@@ -141,12 +141,12 @@ std::vector<GivenParameter> transport_parameters(const DeploymentSpec& deploymen
 
 namespace {
 
-/// Which process has which component.
+/// Assigns each component to a process.
 class Placement {
  public:
   explicit Placement(const GraphSpec& graph) : graph_(graph) {}
 
-  /// The components that `wanted` means, now of `process`.
+  /// Assigns the components that `wanted` names to `process`.
   void take(const ProcessSpec& process, const std::string& wanted) {
     if (wanted == "*") return;
     const bool optional = wanted.ends_with('?');
@@ -201,7 +201,7 @@ void check_names(const DeploymentSpec& deployment, const std::vector<PlacedProce
   for (const PlacedProcess& process : placed) {
     if (!names.insert(process.name).second) {
       throw ConfigError(deployment.where, "processes",
-                        "there are two processes '" + process.name + "'");
+                        "process '" + process.name + "' is given twice");
     }
   }
 }

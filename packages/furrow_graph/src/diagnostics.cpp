@@ -9,7 +9,7 @@ namespace {
 
 using diagnostic_msgs::msg::DiagnosticStatus;
 
-void add(DiagnosticStatus& status, const std::string& key, const std::string& value) {
+void add_value(DiagnosticStatus& status, const std::string& key, const std::string& value) {
   auto& entry = status.values().emplace_back();
   entry.key(key);
   entry.value(value);
@@ -40,24 +40,24 @@ diagnostic_msgs::msg::DiagnosticArray make_diagnostics(Time now, const std::stri
       received += input.received;
       dropped += input.dropped;
     }
-    add(status, "class", component.class_name);
-    add(status, "received", std::to_string(received));
-    add(status, "dropped", std::to_string(dropped));
-    add(status, "callbacks", std::to_string(component.callbacks));
+    add_value(status, "class", component.class_name);
+    add_value(status, "received", std::to_string(received));
+    add_value(status, "dropped", std::to_string(dropped));
+    add_value(status, "callbacks", std::to_string(component.callbacks));
     if (with_times) {
-      add(status, "missed_timers", std::to_string(component.missed_timers));
-      add(status, "busy_s", std::to_string(component.busy_s));
-      add(status, "longest_call_s", std::to_string(component.longest_call_s));
+      add_value(status, "missed_timers", std::to_string(component.missed_timers));
+      add_value(status, "busy_s", std::to_string(component.busy_s));
+      add_value(status, "longest_call_s", std::to_string(component.longest_call_s));
     }
     for (const auto& [counter, count] : component.health.counters) {
-      add(status, "count/" + counter, std::to_string(count));
+      add_value(status, "count/" + counter, std::to_string(count));
     }
     array.status().push_back(std::move(status));
   }
   if (transport != nullptr) {
     DiagnosticStatus status = status_of(process, "transport", *transport);
     for (const auto& [counter, count] : transport->counters) {
-      add(status, "count/" + counter, std::to_string(count));
+      add_value(status, "count/" + counter, std::to_string(count));
     }
     array.status().push_back(std::move(status));
   }

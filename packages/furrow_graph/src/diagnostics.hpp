@@ -9,9 +9,9 @@
 
 namespace furrow::graph {
 
-/// The health of a process as ROS 2 tools show it: a status for each component, named
-/// "PROCESS: COMPONENT", and one for the transport, "PROCESS: transport". Figures of the wall clock
-/// are left out on request, so that simulated time gives the same bytes.
+/// The health of a process as ROS 2 tools show it: a status "PROCESS: COMPONENT" for each
+/// component, and "PROCESS: transport" (null: none). Without `with_times` it has no wall-clock
+/// times, so that simulated time gives the same bytes.
 [[nodiscard]] diagnostic_msgs::msg::DiagnosticArray make_diagnostics(
     Time now, const std::string& process, std::span<const ComponentStatus> components,
     const Health* transport, bool with_times);

@@ -73,7 +73,7 @@ class Wiring {
             !external.contains(name)) {
           throw ConfigError(component->where, component->name,
                             "input '" + std::string(port.topic->name) +
-                                "' is not connected: nobody publishes '" + name + "'");
+                                "' is not connected: no component publishes '" + name + "'");
         }
         check_request(*component, name, port.topic->qos);
       }
@@ -149,7 +149,7 @@ std::vector<Connection> check_graph(const GraphSpec& graph, Registry& registry) 
   std::set<std::string> known_common;
   for (const ComponentSpec& component : graph.components) {
     if (!names.insert(component.name).second) {
-      throw ConfigError(component.where, component.name, "stands twice");
+      throw ConfigError(component.where, component.name, "is given twice");
     }
     if (!component.library.empty()) registry.load_library(component.library);
     const SourceLocation& class_where =

@@ -30,7 +30,7 @@ void read_remaps(const YamlSource& source, const YAML::Node& map, ComponentSpec&
 bool read_thread(const YamlSource& source, const YAML::Node& value, const std::string& name) {
   const std::string text = source.text(value, "thread");
   if (text == "dedicated" || text == "pool") return text == "dedicated";
-  throw ConfigError(source.where(value), name + ".thread", "is neither dedicated nor pool");
+  throw ConfigError(source.where(value), name + ".thread", "must be dedicated or pool");
 }
 
 int read_priority(const YamlSource& source, const YAML::Node& value, const std::string& name) {
@@ -39,7 +39,7 @@ int read_priority(const YamlSource& source, const YAML::Node& value, const std::
   if (const auto* priority = std::get_if<std::int64_t>(&number)) {
     if (*priority >= 0 && *priority <= kHighest) return static_cast<int>(*priority);
   }
-  throw ConfigError(source.where(value), name + ".priority", "is not a number from 0 to 99");
+  throw ConfigError(source.where(value), name + ".priority", "must be a number from 0 to 99");
 }
 
 ComponentSpec read_component(const YamlSource& source, const std::string& name,
@@ -79,10 +79,11 @@ ComponentSpec read_component(const YamlSource& source, const std::string& name,
       });
   if (spec.class_name.empty()) throw ConfigError(spec.where, name + ".class", "is missing");
   if (spec.for_each.empty() != spec.for_each_parameter.empty()) {
-    throw ConfigError(spec.where, name, "for_each and parameter go together");
+    throw ConfigError(spec.where, name,
+                      "for_each requires parameter, and parameter requires for_each");
   }
   if (spec.priority > 0 && !spec.dedicated_thread) {
-    throw ConfigError(spec.where, name + ".priority", "needs thread: dedicated");
+    throw ConfigError(spec.where, name + ".priority", "requires thread: dedicated");
   }
   for (GivenParameter& parameter : over) merge(spec.parameters, std::move(parameter));
   return spec;
@@ -165,7 +166,7 @@ void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings) 
       merge(spec.parameters, parameter);
       found = true;
     }
-    if (!found) throw ConfigError(where, component, "there is no such component in the graph");
+    if (!found) throw ConfigError(where, component, "the graph has no such component");
   }
 }
 

@@ -8,9 +8,9 @@
 namespace furrow::graph {
 namespace {
 
-/// Steps simulated time from one due timer to the next. At an instant the nodes run in steps: those
-/// with mail or a due timer run side by side, then what they published is delivered in the order of
-/// the graph. So the outcome does not depend on the number of threads.
+/// Advances simulated time from one due timer to the next. At each instant it runs simulation
+/// steps: all nodes with messages or a due timer run in parallel. Then their messages are delivered
+/// in the order of the graph. So the outcome does not depend on the number of threads.
 class LockstepExecutor final : public Executor {
  public:
   explicit LockstepExecutor(int threads) : workers_(threads) {}
@@ -18,7 +18,7 @@ class LockstepExecutor final : public Executor {
   [[nodiscard]] Time now() const override { return now_; }
 
   void publish(Node& from, Route& route, MessagePtr message) override {
-    // Constructors run one after another, before the outboxes are known.
+    // Constructors run one after another, before the nodes have outboxes.
     auto& outbox = running_ ? outboxes_[index_of(from)] : constructed_;
     outbox.push_back({&from, &route, std::move(message)});
   }
@@ -58,7 +58,7 @@ class LockstepExecutor final : public Executor {
     Route* route;
     MessagePtr message;
   };
-  /// A message on its way to the inputs of this process, with what its place in line follows from.
+  /// A message for the inputs of this process, with the keys of its place in the order.
   struct Delivery {
     std::uint32_t component;
     std::uint32_t topic;
@@ -73,7 +73,7 @@ class LockstepExecutor final : public Executor {
       if (stop_.requested()) break;
       const Time next = next_timer();
       if (next == kNever) {
-        stop_.set("nothing is left to do", false);
+        stop_.set("no message or timer is left", false);
         break;
       }
       advance_to(next);
@@ -81,8 +81,8 @@ class LockstepExecutor final : public Executor {
     return stop_.result(now_);
   }
 
-  /// With other processes: every step is exchanged before the next one runs, and all draw the same
-  /// conclusions from it.
+  /// With other processes: each step is exchanged before the next one runs. All processes conclude
+  /// the same from it.
   RunResult run_shared() {
     StepExchange& exchange = *shared_->exchange;
     std::vector<Time> next_timers(exchange.size(), kNever);
@@ -107,7 +107,7 @@ class LockstepExecutor final : public Executor {
       active = woken_by(*steps);
       if (std::ranges::find(active, true) == active.end()) {
         const Time next = std::ranges::min(next_timers);
-        if (next == kNever) return {"nothing is left to do", false, now_};
+        if (next == kNever) return {"no message or timer is left", false, now_};
         advance_to(next);
         for (std::size_t i = 0; i < active.size(); ++i) active[i] = next_timers[i] <= now_;
       }
@@ -118,7 +118,7 @@ class LockstepExecutor final : public Executor {
     }
   }
 
-  /// The processes that have something to do within the instant.
+  /// The processes that have messages within the instant.
   [[nodiscard]] std::vector<bool> woken_by(const StepExchange::Steps& steps) const {
     std::vector<bool> woken(steps.size(), false);
     for (const auto& step : steps) {
@@ -141,11 +141,11 @@ class LockstepExecutor final : public Executor {
     return published;
   }
 
-  /// This process's part of a step. Its own messages are kept for deliver_all().
+  /// This process's part of a step. Its messages are kept in own_ for deliver_all().
   [[nodiscard]] std::shared_ptr<Step> make_step(std::vector<Published> published) {
     auto step = std::make_shared<Step>();
     step->next_timer_ns = next_timer().count_ns();
-    // An interruption is told by abort(): the others must not learn of it in one way or the other.
+    // abort() tells the others of an interruption. Here it would reach only some of them in time.
     if (stop_.requested() && !interrupted_) {
       const RunResult result = stop_.result(now_);
       step->stop = true;
@@ -173,8 +173,8 @@ class LockstepExecutor final : public Executor {
     return step;
   }
 
-  /// Hands all that was published in a step to the inputs of this process, in the order of the
-  /// graph's components; false when something cannot be read.
+  /// Delivers the messages of a step to the inputs of this process, in the order of the graph's
+  /// components. False if a message cannot be deserialized.
   [[nodiscard]] bool deliver_all(const StepExchange::Steps& steps) {
     std::vector<Delivery> deliveries = std::exchange(own_, {});
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -208,7 +208,7 @@ class LockstepExecutor final : public Executor {
     }
   }
 
-  /// False when no node has anything to do.
+  /// False if no node has messages or a due timer.
   bool run_step() {
     take_from_transport();
     ready_.clear();
@@ -251,7 +251,7 @@ class LockstepExecutor final : public Executor {
     from_transport_.clear();
   }
 
-  // Between steps no node runs: what is seen of them is the same on any number of threads.
+  // Between steps no node runs, so the status is the same on any number of threads.
   void advance_to(Time next) {
     constexpr std::int64_t kSecond_ns = 1'000'000'000;
     const bool crossed = next.count_ns() / kSecond_ns > now_.count_ns() / kSecond_ns;

@@ -8,7 +8,7 @@
 
 namespace furrow::graph {
 
-/// Adds a parameter, or replaces the one of its name.
+/// Adds a parameter, or replaces the one with its name.
 inline void merge(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
   const auto it = std::ranges::find(parameters, parameter.name, &GivenParameter::name);
   if (it == parameters.end()) {

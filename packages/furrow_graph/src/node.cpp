@@ -35,7 +35,7 @@ std::optional<std::size_t> Node::input_of(const std::string& topic) const {
 }
 
 void Node::push(std::size_t input, MessagePtr message) {
-  Mail oldest;  // freed after the lock: that of an image takes a while
+  Mail oldest;  // freed after the lock: freeing an image takes a while
   const MutexLock lock(mutex_);
   Input& target = inputs_[input];
   ++target.received;
@@ -157,7 +157,7 @@ void Node::require_declared(const std::vector<PortInfo>& ports, const msgs::Topi
 void Node::bind_input(const msgs::Topic& topic, std::function<void(const MessagePtr&)> callback,
                       int depth) {
   require_declared(type_.description.inputs(), topic);
-  if (depth < 1) throw ConfigError("the depth of an input must be positive");
+  if (depth < 1) throw ConfigError("the depth of an input must be at least 1");
   const MutexLock lock(mutex_);
   inputs_.push_back(
       {resolved_topic(spec_, topic), static_cast<std::size_t>(depth), std::move(callback)});

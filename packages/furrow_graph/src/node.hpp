@@ -18,18 +18,18 @@
 
 namespace furrow::graph {
 
-/// What the executor offers to its nodes.
+/// The executor as its nodes see it.
 class NodeHost {
  public:
   virtual ~NodeHost() = default;
   [[nodiscard]] virtual Time now() const = 0;
-  /// Called by a node, on the thread of its callback.
+  /// On the thread of the node's callback.
   virtual void publish(Node& from, Route& route, MessagePtr message) = 0;
   virtual void request_stop(std::string_view reason, bool failed) = 0;
 };
 
-/// A component of this process with its mailboxes and timers: the Context that the component sees.
-/// push() may be called from any thread; run_*() by one thread at a time.
+/// A component of this process with its mailboxes and timers; the component's Context. Call push()
+/// from any thread, and run_*() from one thread at a time.
 class Node final : public Context {
  public:
   struct Timer {
@@ -42,13 +42,13 @@ class Node final : public Context {
        std::uint64_t seed, NodeHost& host);
   ~Node() override;
 
-  /// Makes the component. The routes must stay alive until the node is gone.
+  /// Creates the component. The routes must outlive the node.
   void construct(std::function<Route&(const std::string& topic)> route_of);
   void destroy_component() { component_.reset(); }
 
   [[nodiscard]] const ComponentSpec& spec() const { return spec_; }
   [[nodiscard]] const ComponentClass& type() const { return type_; }
-  /// The index of the input that reads `topic`, if the component bound it.
+  /// The index of the input that reads `topic`, if the component has one.
   [[nodiscard]] std::optional<std::size_t> input_of(const std::string& topic) const;
 
   void push(std::size_t input, MessagePtr message);
@@ -59,7 +59,7 @@ class Node final : public Context {
   [[nodiscard]] std::vector<Timer>& timers() { return timers_; }
   void run_timer(std::size_t timer, Time due);
   void count_missed_timer() { ++missed_timers_; }
-  /// What thread calls the node, and whether its memory stays in place: for the status.
+  /// For the status: the thread that calls the node, and whether memory is locked.
   void set_thread(std::string text);
   void set_memory(std::string text);
 
@@ -106,7 +106,7 @@ class Node final : public Context {
   std::function<Route&(const std::string&)> route_of_;
   std::unique_ptr<Component> component_;
   std::vector<Timer> timers_;
-  Time arrival_;  // of the message that is being handled
+  Time arrival_;  // of the current message
 
   mutable Mutex mutex_;
   std::vector<Input> inputs_ FURROW_GUARDED_BY(mutex_);

@@ -33,11 +33,11 @@ ParameterValue parse_parameter_value(std::string_view text) {
     const YAML::Node node = YAML::Load("value: " + std::string(text));
     const YAML::Node value = node["value"];
     if (value.IsScalar() || value.IsSequence()) {
-      // The same rules as for a file, on a file of one line.
+      // By the rules of a file, as a file of one line.
       return YamlSource::value(value);
     }
   } catch (const YAML::Exception&) {
-    // Not YAML: then it is a string.
+    // Text that is not YAML is a string.
   }
   return std::string(text);
 }

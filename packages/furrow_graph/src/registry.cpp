@@ -18,7 +18,7 @@ void Registry::add(ComponentClass entry) {
 
 void Registry::load_library(const std::filesystem::path& path) {
   if (loaded_.contains(path)) return;
-  // Never closed: classes and messages may live in it until the process ends.
+  // Never closed: classes and messages of the library may exist until the process ends.
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     throw ConfigError({path.string(), 0}, "", std::string("cannot load: ") + ::dlerror());

@@ -13,7 +13,7 @@ namespace furrow::graph {
 
 namespace {
 
-/// In simulated time the wall clock says nothing of how often messages come.
+/// Deadlines and leases are of the wall clock, which simulated time does not follow.
 msgs::Qos transport_qos(msgs::Qos qos, ClockMode clock) {
   if (clock == ClockMode::kReal) return qos;
   qos.deadline = Duration();
@@ -30,16 +30,16 @@ struct Runtime::Impl {
   std::vector<std::unique_ptr<Node>> nodes;
   struct Incoming {
     std::unique_ptr<TransportReader> reader;
-    int writers = 0;  ///< as many as there are other processes that publish it
+    int writers = 0;  ///< the number of other processes that publish the topic
   };
   std::vector<Incoming> incoming;
-  std::vector<const Route*> outgoing;  ///< those that other processes of the deployment read
+  std::vector<const Route*> outgoing;  ///< read by other processes of the deployment
   std::map<std::string, std::string> process_of;
   std::unique_ptr<TransportWriter> diagnostics_writer;
   std::vector<Route::Reader> diagnostics_readers;
 
   ~Impl() {
-    // Readers first: nothing may arrive for a node that is gone.
+    // Readers first, so that no message arrives for a destroyed node.
     incoming.clear();
     for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) (*it)->destroy_component();
   }
@@ -48,7 +48,7 @@ struct Runtime::Impl {
     return std::ranges::any_of(nodes, [&](const auto& node) { return node->name() == name; });
   }
 
-  /// The other processes of the deployment that have one of these components.
+  /// The other processes of the deployment with one of these components.
   [[nodiscard]] std::set<std::string> elsewhere(const std::vector<std::string>& components,
                                                 const std::string& own) const {
     std::set<std::string> processes;
@@ -107,11 +107,11 @@ struct Runtime::Impl {
       if (const auto route = routes.find(connection.topic); route != routes.end()) {
         route->second->readers = readers;
       }
-      // What another process publishes, or may: a topic without any publisher in the graph.
+      // Read topics of other processes, and those without a publisher in the graph.
       const bool all_local =
           !connection.publishers.empty() &&
           std::ranges::all_of(connection.publishers, [&](const auto& p) { return is_local(p); });
-      // In a shared lock-step the steps carry what the graph itself publishes.
+      // In a shared lock-step, step messages carry the topics of the graph.
       if (transport == nullptr || all_local || (shared && !connection.publishers.empty())) continue;
       auto reader = transport->make_reader(connection.topic, *connection.type, connection.qos,
                                            [this, readers](MessagePtr message) {
@@ -166,7 +166,7 @@ struct Runtime::Impl {
 
 namespace {
 
-/// Of what must be the same in all processes of a lock-step. Paths may differ by host.
+/// FNV-1a of the settings that all processes of a lock-step must share. Paths may differ by host.
 std::uint64_t digest_of(const GraphSpec& graph, const std::vector<Connection>& connections,
                         const RuntimeOptions& options) {
   std::string text = std::to_string(options.seed) + "\n";
@@ -252,7 +252,8 @@ Runtime::Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOption
   impl_->connect(options, shared);
   impl_->diagnose(options);
   if (shared) {
-    if (options.transport == nullptr) throw ConfigError("several processes need a transport");
+    if (options.transport == nullptr)
+      throw ConfigError("a lock-step of several processes requires a transport");
     impl_->executor->share(impl_->make_shared_lockstep(graph, options));
   }
 }

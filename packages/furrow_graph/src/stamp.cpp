@@ -4,18 +4,18 @@
 
 namespace furrow::graph {
 namespace {
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 }
 
 Time from_msg(const builtin_interfaces::msg::Time& stamp) {
-  return Time::from_nanoseconds(stamp.sec() * kSecond_ns + stamp.nanosec());
+  return Time::from_nanoseconds(stamp.sec() * kNsPerSecond + stamp.nanosec());
 }
 
 builtin_interfaces::msg::Time to_msg(Time time) {
-  std::int64_t seconds = time.count_ns() / kSecond_ns;
-  std::int64_t rest_ns = time.count_ns() % kSecond_ns;
+  std::int64_t seconds = time.count_ns() / kNsPerSecond;
+  std::int64_t rest_ns = time.count_ns() % kNsPerSecond;
   if (rest_ns < 0) {
-    rest_ns += kSecond_ns;
+    rest_ns += kNsPerSecond;
     --seconds;
   }
   builtin_interfaces::msg::Time stamp;

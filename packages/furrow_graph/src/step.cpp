@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "the CDR form is littl
 constexpr std::size_t kEncapsulation = 4;
 constexpr std::byte kLittleEndian{1};
 
-/// Writes XCDR1; without a buffer it counts.
+/// Writes XCDR1. Without a buffer it only counts the bytes.
 class CdrWriter {
  public:
   CdrWriter() = default;
@@ -47,7 +47,7 @@ class CdrWriter {
   std::size_t at_ = 0;
 };
 
-/// Reads XCDR1; reading beyond the end gives zeros and fails.
+/// Reads XCDR1. Beyond the end it returns zeros, and ok() is false.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::byte> buffer) : buffer_(buffer) {}
@@ -71,7 +71,7 @@ class CdrReader {
     const auto from = take(number<std::uint32_t>());
     return {from.begin(), from.end()};
   }
-  /// A sequence's length; its elements take at least `element` bytes each.
+  /// The length of a sequence whose elements take at least `element` bytes each.
   std::size_t length(std::size_t element) {
     const std::size_t count = number<std::uint32_t>();
     if (ok_ && count > (buffer_.size() - at_) / element) ok_ = false;

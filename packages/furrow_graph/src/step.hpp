@@ -9,26 +9,26 @@
 
 namespace furrow::graph {
 
-/// A message that some other process reads.
+/// A message that another process reads.
 struct StepMessage {
   std::uint32_t topic = 0;      ///< index into the graph's connections
-  std::uint32_t component = 0;  ///< of the publisher: its index in the graph
+  std::uint32_t component = 0;  ///< the publisher's index in the graph
   std::vector<std::byte> cdr;
 };
 
-/// What one process tells all others of a step of the lock-step (see docs/decisions/0005).
+/// One process's part of a simulation step, sent to all others (docs/decisions/0005).
 struct Step {
   std::uint64_t number = 0;
   std::uint64_t run = 0;       ///< digest of graph, deployment and seed
-  std::uint64_t instance = 0;  ///< differs each time the process is started
+  std::uint64_t instance = 0;  ///< a random number of each start of the process
   std::int64_t next_timer_ns = 0;
   std::string process;
-  bool stop = false;  ///< a component asked for the end of the run, or failed
+  bool stop = false;  ///< a component requested the end of the run, or failed
   bool failed = false;
-  bool aborted = false;               ///< out of turn: the process leaves now
+  bool aborted = false;               ///< the process leaves now, outside the order of steps
   std::string reason;                 ///< of the stop
-  std::vector<std::uint32_t> topics;  ///< that were published, in ascending order
-  std::vector<StepMessage> messages;  ///< by component, and in the order of their publication
+  std::vector<std::uint32_t> topics;  ///< published in this step, ascending
+  std::vector<StepMessage> messages;  ///< by component, then in the order of publication
 };
 
 [[nodiscard]] const msgs::MessageType& step_type();

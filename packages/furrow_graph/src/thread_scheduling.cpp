@@ -39,9 +39,9 @@ std::string use_fifo_scheduling(int priority) {
 }
 
 std::string lock_memory() {
-  if (!may_lock_without_limit()) return "the limit of locked memory is too low";
-  // What an image's buffers give back stays with the process: to map and clear their pages again
-  // for each image stops every thread for milliseconds.
+  if (!may_lock_without_limit()) return "the limit of locked memory (ulimit -l) is too low";
+  // Freed image buffers stay with the process. Mapping and clearing their pages for each image
+  // would stop every thread for milliseconds.
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? "" : std::strerror(errno);

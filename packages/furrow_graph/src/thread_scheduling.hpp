@@ -4,16 +4,15 @@
 
 namespace furrow::graph {
 
-/// Gives the calling thread SCHED_FIFO with this priority; empty, or why it was refused.
+/// Gives the calling thread SCHED_FIFO with this priority. Returns why it was refused, or "".
 [[nodiscard]] std::string use_fifo_scheduling(int priority);
 
-/// Locks the memory of the process, present and future, as it is used for the first time: to take
-/// all that is reserved (stacks, libraries, the shared memory of others) would cost each process
-/// hundreds of megabytes. Empty, or why it was refused. Refused where a limit would make later
-/// allocations fail.
+/// Locks the memory of the process, present and future, at its first use. Locking all reserved
+/// memory (stacks, libraries, shared memory) would cost hundreds of megabytes. Returns why it was
+/// refused, or "". It is refused where a limit would make later allocations fail.
 [[nodiscard]] std::string lock_memory();
 
-/// Uses the calling thread's stack once, so that it is there when time counts.
+/// Touches the calling thread's stack, so that it causes no page fault later.
 void touch_stack();
 
 }  // namespace furrow::graph

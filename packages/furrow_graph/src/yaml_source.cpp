@@ -79,15 +79,15 @@ void YamlSource::each(const YAML::Node& map, std::string_view what, const MapVis
   std::set<std::string> seen;
   for (const auto& entry : map) {
     if (!entry.first.IsScalar())
-      throw ConfigError(where(entry.first), what, "has a key that is no word");
+      throw ConfigError(where(entry.first), what, "has a key that is not a single word");
     const std::string key = entry.first.Scalar();
-    if (!seen.insert(key).second) throw ConfigError(where(entry.first), key, "stands twice");
+    if (!seen.insert(key).second) throw ConfigError(where(entry.first), key, "is given twice");
     visit(key, entry.first, entry.second);
   }
 }
 
 std::string YamlSource::text(const YAML::Node& node, std::string_view key) const {
-  if (!node.IsScalar()) throw ConfigError(where(node), key, "is not a word");
+  if (!node.IsScalar()) throw ConfigError(where(node), key, "must be a single value");
   return node.Scalar();
 }
 
@@ -109,12 +109,12 @@ std::vector<GivenParameter> YamlSource::parameters(const YAML::Node& map,
   each(map, what, [&](const std::string& key, const YAML::Node& key_node, const YAML::Node& node) {
     GivenParameter parameter{key, {}, where(key_node)};
     if (!node.IsScalar() && !node.IsSequence()) {
-      throw ConfigError(where(key_node), key, "has no value, or more than a plain one");
+      throw ConfigError(where(key_node), key, "must have one value or a list of values");
     }
     try {
       parameter.value = value(node);
     } catch (const YAML::Exception&) {
-      throw ConfigError(where(key_node), key, "holds more than plain values");
+      throw ConfigError(where(key_node), key, "must be a value or a list of values");
     }
     if (auto* path = std::get_if<std::string>(&parameter.value);
         path != nullptr && is_path(key) && !path->empty()) {

@@ -12,10 +12,10 @@
 
 namespace furrow::graph {
 
-/// A YAML file with the places of its nodes.
+/// A YAML file with the locations of its nodes.
 class YamlSource {
  public:
-  /// Throws ConfigError when the file cannot be read or is not YAML.
+  /// Throws ConfigError if the file cannot be read or is not YAML.
   explicit YamlSource(const std::filesystem::path& path);
 
   [[nodiscard]] const YAML::Node& root() const { return root_; }
@@ -24,14 +24,14 @@ class YamlSource {
 
   using MapVisitor = std::function<void(const std::string& key, const YAML::Node& key_node,
                                         const YAML::Node& value)>;
-  /// Calls back for each entry of a map, in the order of the file; `what` names it in errors. A key
-  /// that stands twice is an error.
+  /// Calls back for each entry of a map, in the order of the file. `what` names the map in errors.
+  /// A key that is given twice is an error.
   void each(const YAML::Node& map, std::string_view what, const MapVisitor& visit) const;
   [[nodiscard]] std::string text(const YAML::Node& node, std::string_view key) const;
   [[nodiscard]] std::vector<std::string> texts(const YAML::Node& node, std::string_view key) const;
   /// A scalar or a list of scalars. Throws YAML::Exception for anything else.
   [[nodiscard]] static ParameterValue value(const YAML::Node& node);
-  /// A map of parameters; paths are made absolute from this file's folder.
+  /// A map of parameters. Relative paths are taken from this file's folder.
   [[nodiscard]] std::vector<GivenParameter> parameters(const YAML::Node& map,
                                                        std::string_view what) const;
 

@@ -14,7 +14,7 @@ namespace {
 using furrow_msgs::msg::Plan;
 using test::spec;
 
-/// Waits for what another thread is to do; false when it does not for a long time.
+/// Waits for another thread to fulfil the condition. False after a long time.
 template <class Condition>
 bool happens(Condition condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
@@ -45,7 +45,7 @@ const ComponentStatus& status_of(const std::vector<ComponentStatus>& all, const 
   return *std::ranges::find(all, name, &ComponentStatus::name);
 }
 
-TEST(DedicatedThread, TicksWhileEveryThreadOfThePoolIsBusy) {
+TEST(DedicatedThread, TicksWhileEveryWorkerIsBusy) {
   Registry registry = test::standard_registry();
   std::atomic<int> ticks = 0;
   bool ticked = false;
@@ -67,7 +67,7 @@ TEST(DedicatedThread, TicksWhileEveryThreadOfThePoolIsBusy) {
   EXPECT_GE(status_of(status, "ticker").timers, 20u);
 }
 
-TEST(DedicatedThread, CallsMessagesAndTimersFromOneThreadOfItsOwn) {
+TEST(DedicatedThread, CallsMessagesAndTimersFromOneThread) {
   Registry registry = test::standard_registry();
   std::mutex mutex;
   std::set<std::thread::id> own;
@@ -107,7 +107,7 @@ TEST(DedicatedThread, CallsMessagesAndTimersFromOneThreadOfItsOwn) {
   EXPECT_FALSE(pool.contains(*own.begin()));
 }
 
-TEST(DedicatedThread, LeavesOutAndCountsWhatComesTooLate) {
+TEST(DedicatedThread, SkipsAndCountsLateTicks) {
   Registry registry;
   std::vector<Time> due;
   add_ticker(registry, [&](Context& context, Time time) {
@@ -121,7 +121,7 @@ TEST(DedicatedThread, LeavesOutAndCountsWhatComesTooLate) {
   Runtime runtime(graph, registry, {.clock = ClockMode::kReal});
   runtime.run();
   ASSERT_EQ(due.size(), 3u);
-  // Whole multiples of the period, and each one was called or counted.
+  // Calls are whole multiples of the period apart; the ticks between were counted.
   std::int64_t left_out = 0;
   for (std::size_t i = 1; i < due.size(); ++i) {
     const std::int64_t apart_ns = (due[i] - due[i - 1]).count_ns();
@@ -133,7 +133,7 @@ TEST(DedicatedThread, LeavesOutAndCountsWhatComesTooLate) {
   EXPECT_GE(left_out, 8);
 }
 
-TEST(DedicatedThread, APriorityIsGrantedOrTheRefusalTold) {
+TEST(DedicatedThread, ReportsWhetherItsPriorityWasGranted) {
   Registry registry;
   add_ticker(registry, [&](Context& context, Time) { context.request_stop("enough"); });
   GraphSpec graph;
@@ -170,7 +170,7 @@ TEST(DedicatedThread, AThrowingCallbackStopsTheRun) {
   EXPECT_EQ(result.reason, "component 'ticker' failed: broken");
 }
 
-TEST(DedicatedThread, LockstepKnowsNothingOfIt) {
+TEST(DedicatedThread, HasNoEffectInLockstep) {
   for (const bool own : {false, true}) {
     Registry registry;
     std::vector<Time> due;

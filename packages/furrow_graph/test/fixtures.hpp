@@ -29,7 +29,8 @@ inline std::filesystem::path write(const std::filesystem::path& path, const std:
   return path;
 }
 
-/// What the ConfigError of a call says, without the scratch folder; empty when it throws none.
+/// The text of the ConfigError that `call` throws, without the scratch folder; "" if it throws
+/// none.
 template <class Call>
 std::string error_of(const std::filesystem::path& folder, Call call) {
   try {
@@ -46,7 +47,7 @@ std::string error_of(const std::filesystem::path& folder, Call call) {
   return "";
 }
 
-/// Publishes a Tracks message with the count so far, at a rate.
+/// Publishes numbered Tracks messages at a rate.
 struct SourceParameters {
   double rate_hz = 10.0;
   std::string label = "source";
@@ -75,7 +76,7 @@ class Source final : public Component {
   int count_ = 0;
 };
 
-/// Turns each Tracks into a Plan with its revision counted up.
+/// Publishes a Plan for each Tracks, with increasing revision.
 class Relay final : public Component {
  public:
   static void describe(Description& d) {
@@ -103,7 +104,7 @@ inline Registry standard_registry() {
   return registry;
 }
 
-/// Registers a class "sink" that hands each Plan to a function of the test.
+/// Registers a class "sink" that calls `take` for each Plan.
 inline void add_sink(Registry& registry,
                      std::function<void(Context&, const furrow_msgs::msg::Plan&)> take) {
   ComponentClass sink{.name = "sink"};

@@ -12,7 +12,7 @@ std::string error(const GraphSpec& graph) {
   return test::error_of("", [&] { check_graph(graph, registry); });
 }
 
-TEST(GraphCheck, WiringIsListedByTopic) {
+TEST(GraphCheck, ListsConnectionsByTopic) {
   Registry registry = test::standard_registry();
   GraphSpec graph;
   graph.components = {spec("s", "source"), spec("r", "relay")};
@@ -23,7 +23,7 @@ TEST(GraphCheck, WiringIsListedByTopic) {
   EXPECT_EQ(connections[1].readers, std::vector<std::string>{"r"});
 }
 
-TEST(GraphCheck, UnknownClass) {
+TEST(GraphCheck, AnUnknownClassIsAnError) {
   GraphSpec graph;
   graph.components = {spec("s", "sauce")};
   EXPECT_EQ(error(graph),
@@ -31,17 +31,17 @@ TEST(GraphCheck, UnknownClass) {
             "libfurrow_component_sauce.so in: (no folder)");
 }
 
-TEST(GraphCheck, UnconnectedInput) {
+TEST(GraphCheck, AnUnconnectedInputIsAnError) {
   GraphSpec graph;
   graph.components = {spec("r", "relay")};
   EXPECT_EQ(error(graph),
-            "graph.yaml:1: r: input 'tracker/tracks' is not connected: nobody publishes "
+            "graph.yaml:1: r: input 'tracker/tracks' is not connected: no component publishes "
             "'tracker/tracks'");
   graph.external = {"tracker/tracks"};
   EXPECT_EQ(error(graph), "");
 }
 
-TEST(GraphCheck, TypeMismatch) {
+TEST(GraphCheck, ATypeMismatchIsAnError) {
   GraphSpec graph;
   graph.components = {spec("s", "source"), spec("r", "relay")};
   graph.components[1].remaps = {{"planner/plan", "tracker/tracks"}};
@@ -50,14 +50,14 @@ TEST(GraphCheck, TypeMismatch) {
             "'planner/plan' has type furrow_msgs/msg/Plan");
 }
 
-TEST(GraphCheck, RemapOfNoPort) {
+TEST(GraphCheck, ARemapOfAnUnknownPortIsAnError) {
   GraphSpec graph;
   graph.components = {spec("s", "source")};
   graph.components[0].remaps = {{"a", "b"}};
   EXPECT_EQ(error(graph), "graph.yaml:1: s.remap.a: class 'source' has no such port");
 }
 
-TEST(GraphCheck, Parameters) {
+TEST(GraphCheck, ABadParameterIsAnError) {
   GraphSpec graph;
   graph.components = {spec("s", "source")};
   graph.components[0].parameters = {{"rate_h", 3.0, {"graph.yaml", 7}}};
@@ -70,7 +70,7 @@ TEST(GraphCheck, Parameters) {
             "'source')");
 }
 
-TEST(GraphCheck, CommonParametersGoToThoseThatDeclareThem) {
+TEST(GraphCheck, CommonParametersGoToComponentsThatDeclareThem) {
   GraphSpec graph;
   graph.components = {spec("s", "source"), spec("r", "relay")};
   graph.common = {{"rate_hz", 3.0, {}}};
@@ -79,8 +79,8 @@ TEST(GraphCheck, CommonParametersGoToThoseThatDeclareThem) {
   EXPECT_EQ(error(graph), "graph.yaml:2: common.rate_kz: no component declares this parameter");
 }
 
-TEST(GraphCheck, QosMismatch) {
-  // A reader of a latched topic wired to one that is not latched would wait in vain.
+TEST(GraphCheck, AnIncompatibleQosNamesThePolicy) {
+  // The reader of a latched topic would never get the messages of an earlier writer.
   Registry registry = test::standard_registry();
   ComponentClass reader{.name = "reader"};
   reader.description.input<msgs::topics::RobotDescription>();

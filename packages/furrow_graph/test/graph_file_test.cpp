@@ -29,7 +29,7 @@ class GraphFile : public testing::Test {
   std::filesystem::path folder_ = scratch_folder();
 };
 
-TEST_F(GraphFile, Loads) {
+TEST_F(GraphFile, LoadsComponentsWithTheirSettings) {
   write(folder_ / "source.yaml", "label: a\nrate_hz: 3\n");
   GraphSpec graph = load(kGraph);
   EXPECT_EQ(graph.name, "example");
@@ -46,7 +46,7 @@ TEST_F(GraphFile, Loads) {
   EXPECT_EQ(graph.components[2].remaps.at("tracker/tracks"), "truth/tracks");
 }
 
-TEST_F(GraphFile, ReadsWhichThreadCallsAComponent) {
+TEST_F(GraphFile, ReadsThreadAndPriorityOfAComponent) {
   const GraphSpec graph = load(
       "components:\n"
       "  a: {class: b}\n"
@@ -61,9 +61,9 @@ TEST_F(GraphFile, ReadsWhichThreadCallsAComponent) {
   EXPECT_FALSE(graph.components[3].dedicated_thread);
 
   EXPECT_EQ(error("components:\n  a: {class: b, thread: own}\n"),
-            "g.yaml:2: a.thread: is neither dedicated nor pool");
+            "g.yaml:2: a.thread: must be dedicated or pool");
   EXPECT_EQ(error("components:\n  a: {class: b, priority: 60}\n"),
-            "g.yaml:2: a.priority: needs thread: dedicated");
+            "g.yaml:2: a.priority: requires thread: dedicated");
   for (const std::string priority : {"100", "-1", "high", "1.5"}) {
     EXPECT_EQ(
         error("components:\n  a: {class: b, thread: dedicated, priority: " + priority + "}\n"),
@@ -71,7 +71,7 @@ TEST_F(GraphFile, ReadsWhichThreadCallsAComponent) {
   }
 }
 
-TEST_F(GraphFile, ErrorsSayFileLineAndKey) {
+TEST_F(GraphFile, AnErrorNamesFileLineAndKey) {
   EXPECT_EQ(error("graph: g\n"), "g.yaml:1: components: is missing or empty");
   EXPECT_EQ(error("graph: g\ncomponent: {}\n"),
             "g.yaml:2: component: unknown key; known: graph, common, external, components");
@@ -83,18 +83,18 @@ TEST_F(GraphFile, ErrorsSayFileLineAndKey) {
             "g.yaml:2: A: is not a component's name (lower-case letters, digits and _; not "
             "'common')");
   EXPECT_EQ(error("components:\n  a: {class: b, for_each: axes}\n"),
-            "g.yaml:2: a: for_each and parameter go together");
+            "g.yaml:2: a: for_each requires parameter, and parameter requires for_each");
   EXPECT_EQ(error("components:\n  a: {class: b, parameters: 3}\n"),
             "g.yaml:2: parameters: is not a map of keys");
 }
 
-TEST_F(GraphFile, UnknownListIsAnError) {
+TEST_F(GraphFile, AnUnknownListIsAnError) {
   GraphSpec graph = load("components:\n  a: {class: b, for_each: wheels, parameter: w}\n");
   EXPECT_EQ(error_of(folder_, [&] { expand_lists(graph, {}); }),
             "g.yaml:2: a.for_each: there is no list 'wheels'");
 }
 
-TEST_F(GraphFile, SettingsGoOverTheFile) {
+TEST_F(GraphFile, SettingsOverrideTheFile) {
   GraphSpec graph = load(
       "components:\n  a: {class: b, parameters: {x: 1}}\n"
       "  axis: {class: c, for_each: axes, parameter: axis}\n");
@@ -104,8 +104,8 @@ TEST_F(GraphFile, SettingsGoOverTheFile) {
   EXPECT_EQ(graph.components[1].parameters[1].value, ParameterValue(true));
   EXPECT_EQ(graph.components[2].parameters[1].value, ParameterValue(false));
   EXPECT_EQ(common_text(graph, "seed"), "4");
-  EXPECT_EQ(error_of(folder_, [&] { apply_settings(graph, {"nobody.x=1"}); }),
-            "--set nobody.x=1: nobody: there is no such component in the graph");
+  EXPECT_EQ(error_of(folder_, [&] { apply_settings(graph, {"other.x=1"}); }),
+            "--set other.x=1: other: the graph has no such component");
   EXPECT_EQ(error_of(folder_, [&] { apply_settings(graph, {"a"}); }),
             "--set a: is not COMPONENT.KEY=VALUE");
 }
@@ -133,10 +133,10 @@ TEST_F(GraphFile, DeploymentPlacesEveryComponentOnce) {
   EXPECT_EQ(error("process: d\n"),
             "d.yaml:1: process: unknown key; known: deployment, hosts, processes, wire");
   EXPECT_EQ(error("processes:\n  one: {components: [a], each: maybe}\n"),
-            "d.yaml:2: one.each: is neither true nor false");
+            "d.yaml:2: one.each: must be true or false");
 }
 
-TEST_F(GraphFile, TheRestMayHaveAProcessEach) {
+TEST_F(GraphFile, RemainingComponentsMayHaveAProcessEach) {
   const GraphSpec graph = load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
   const auto place = [&](const std::string& text) {
     return place_components(graph, load_deployment(write(folder_ / "d.yaml", text)));
@@ -159,7 +159,7 @@ TEST_F(GraphFile, TheRestMayHaveAProcessEach) {
       "d.yaml:1: processes: there are two processes 'b'");
 }
 
-TEST_F(GraphFile, AddressesOfTheHostsBecomeParametersOfTheWire) {
+TEST_F(GraphFile, HostAddressesBecomeTransportParameters) {
   const std::string text =
       "hosts: {one: 10.0.0.1, two: 10.0.0.2, three: 10.0.0.3}\n"
       "processes: {p: {host: two, components: \"*\"}}\n";

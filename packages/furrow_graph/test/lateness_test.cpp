@@ -9,7 +9,7 @@ Duration us(std::int64_t microseconds) {
   return Duration::nanoseconds(1000 * microseconds);
 }
 
-TEST(LatenessHistogram, GivesQuantilesRoundedUpToItsSteps) {
+TEST(LatenessHistogram, RoundsQuantilesUpToABin) {
   LatenessHistogram histogram;
   EXPECT_EQ(histogram.quantile(0.5), Duration());
   for (int i = 1; i <= 1000; ++i) histogram.add(us(i));
@@ -20,14 +20,14 @@ TEST(LatenessHistogram, GivesQuantilesRoundedUpToItsSteps) {
   EXPECT_EQ(histogram.max(), us(1000));
 }
 
-TEST(LatenessHistogram, BeyondItsStepsItKnowsTheGreatest) {
+TEST(LatenessHistogram, ReportsTheMaximumBeyondTheBins) {
   LatenessHistogram histogram;
   histogram.add(us(5));
   histogram.add(Duration::milliseconds(70));
   histogram.add(Duration::milliseconds(90));
   EXPECT_EQ(histogram.quantile(0.3), us(10));
   EXPECT_EQ(histogram.quantile(0.9), Duration::milliseconds(90));
-  histogram.add(Duration::milliseconds(-1));  // early counts as in time
+  histogram.add(Duration::milliseconds(-1));  // an early call counts as punctual
   EXPECT_EQ(histogram.quantile(0.25), us(10));
 }
 

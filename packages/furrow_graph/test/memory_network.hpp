@@ -16,9 +16,9 @@
 
 namespace furrow::graph::test {
 
-/// A network in memory: messages go through their CDR form and a thread of the network. Messages of
-/// different writers overtake each other, as `seed` will have it; those of one writer do not. Late
-/// readers get what latched writers kept.
+/// A network in memory: a thread of the network delivers messages in CDR form. Messages of
+/// different writers overtake each other at random by `seed`; those of one writer do not. Late
+/// readers get the messages of latched writers.
 class MemoryNetwork {
  public:
   explicit MemoryNetwork(std::uint64_t seed) : random_(seed), thread_([this] { carry(); }) {}
@@ -31,7 +31,7 @@ class MemoryNetwork {
     thread_.join();
   }
 
-  /// One process's end.
+  /// The transport of one process.
   class Endpoint final : public Transport {
    public:
     Endpoint(MemoryNetwork& network, int process) : network_(network), process_(process) {}
@@ -66,14 +66,14 @@ class MemoryNetwork {
       owner.readers_.insert(this);
       for (const auto& [writer, kept] : owner.kept_) {
         if (writer->topic != topic || writer->process == process) continue;
-        for (const Bytes& bytes : kept) owner.on_the_way_[{writer, this}].push_back(bytes);
+        for (const Bytes& bytes : kept) owner.pending_[{writer, this}].push_back(bytes);
       }
       owner.wake_.notify_all();
     }
     ~Reader() override {
       std::unique_lock lock(owner.mutex_);
       owner.readers_.erase(this);
-      std::erase_if(owner.on_the_way_, [this](const auto& e) { return e.first.second == this; });
+      std::erase_if(owner.pending_, [this](const auto& e) { return e.first.second == this; });
       owner.idle_.wait(lock, [this] { return owner.calling_ != this; });
     }
     [[nodiscard]] TransportCounters counters() const override { return {}; }
@@ -122,7 +122,7 @@ class MemoryNetwork {
       }
       for (Reader* reader : owner.readers_) {
         if (reader->topic == topic && reader->process != process) {
-          owner.on_the_way_[{this, reader}].push_back(sent);
+          owner.pending_[{this, reader}].push_back(sent);
         }
       }
       owner.wake_.notify_all();
@@ -138,15 +138,15 @@ class MemoryNetwork {
   void carry() {
     std::unique_lock lock(mutex_);
     while (true) {
-      wake_.wait(lock, [this] { return quit_ || !on_the_way_.empty(); });
+      wake_.wait(lock, [this] { return quit_ || !pending_.empty(); });
       if (quit_) return;
-      auto lane = on_the_way_.begin();
-      const auto lanes = static_cast<std::int64_t>(on_the_way_.size());
-      std::advance(lane, random_.integer(0, lanes - 1));
-      Reader* reader = lane->first.second;
-      const Bytes bytes = std::move(lane->second.front());
-      lane->second.pop_front();
-      if (lane->second.empty()) on_the_way_.erase(lane);
+      auto next = pending_.begin();
+      const auto count = static_cast<std::int64_t>(pending_.size());
+      std::advance(next, random_.integer(0, count - 1));
+      Reader* reader = next->first.second;
+      const Bytes bytes = std::move(next->second.front());
+      next->second.pop_front();
+      if (next->second.empty()) pending_.erase(next);
       calling_ = reader;
       lock.unlock();
       const std::shared_ptr<void> message = reader->type.create();
@@ -163,7 +163,7 @@ class MemoryNetwork {
   Random random_;
   std::set<Reader*> readers_;
   std::map<Writer*, std::deque<Bytes>> kept_;
-  std::map<std::pair<Writer*, Reader*>, std::deque<Bytes>> on_the_way_;
+  std::map<std::pair<Writer*, Reader*>, std::deque<Bytes>> pending_;
   Reader* calling_ = nullptr;
   bool quit_ = false;
   std::thread thread_;

@@ -20,7 +20,7 @@ struct Parameters {
   }
 };
 
-TEST(ParameterFile, ValuesHaveTheirTypes) {
+TEST(ParameterFile, ReadsValuesOfEveryType) {
   EXPECT_EQ(parse_parameter_value("true"), ParameterValue(true));
   EXPECT_EQ(parse_parameter_value("-3"), ParameterValue(std::int64_t{-3}));
   EXPECT_EQ(parse_parameter_value("1e-3"), ParameterValue(1e-3));
@@ -31,7 +31,7 @@ TEST(ParameterFile, ValuesHaveTheirTypes) {
   EXPECT_EQ(parse_parameter_value("a: [b"), ParameterValue(std::string("a: [b")));
 }
 
-TEST(ParameterFile, PathsAreTakenFromTheFilesFolder) {
+TEST(ParameterFile, RelativePathsStartAtTheFilesFolder) {
   const auto folder = scratch_folder();
   const auto path = write(folder / "a" / "p.yaml", "tool_file: ../b/x.urdf\nrate_hz: 4\n");
   const auto parameters = load_parameter_file<Parameters>(path);
@@ -39,14 +39,14 @@ TEST(ParameterFile, PathsAreTakenFromTheFilesFolder) {
   EXPECT_EQ(parameters.rate_hz, 4.0);
 }
 
-TEST(ParameterFile, ErrorsSayFileLineAndKey) {
+TEST(ParameterFile, AnErrorNamesFileLineAndKey) {
   const auto folder = scratch_folder();
   const auto load = [&](const std::string& text) {
     const auto path = write(folder / "p.yaml", text);
     return error_of(folder, [&] { (void)load_parameter_file<Parameters>(path); });
   };
-  EXPECT_EQ(load("rate_hz: 1\nrate_hz: 2\n"), "p.yaml:2: rate_hz: stands twice");
-  EXPECT_EQ(load("names: [a, [b]]\n"), "p.yaml:1: names: holds more than plain values");
+  EXPECT_EQ(load("rate_hz: 1\nrate_hz: 2\n"), "p.yaml:2: rate_hz: is given twice");
+  EXPECT_EQ(load("names: [a, [b]]\n"), "p.yaml:1: names: must be a value or a list of values");
   EXPECT_EQ(load("\nrate_hz:\n"), "p.yaml:2: rate_hz: has no value, or more than a plain one");
   EXPECT_EQ(load("- 1\n"), "p.yaml:1: is not a map of keys");
   EXPECT_TRUE(load("a: [1\nb: 2\n").starts_with("p.yaml:")) << load("a: [1\nb: 2\n");
@@ -54,7 +54,7 @@ TEST(ParameterFile, ErrorsSayFileLineAndKey) {
             "none.yaml: no such file");
 }
 
-TEST(ParameterFile, ListsOfMaps) {
+TEST(ParameterFile, ReadsListsOfMaps) {
   const auto folder = scratch_folder();
   const auto path = write(folder / "l.yaml", "things:\n  - {rate_hz: 2}\n  - {names: [x]}\n");
   const auto things = load_parameter_list<Parameters>(path, "things");

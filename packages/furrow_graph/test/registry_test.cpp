@@ -11,7 +11,7 @@ TEST(Registry, NamesAreUnique) {
   EXPECT_EQ(registry.classes().size(), 2u);
 }
 
-TEST(Registry, ALibraryThatIsNoneIsAnError) {
+TEST(Registry, AFileThatIsNoLibraryIsAnError) {
   const auto folder = test::scratch_folder();
   const auto path = test::write(folder / "libfurrow_component_x.so", "not a library");
   Registry registry;

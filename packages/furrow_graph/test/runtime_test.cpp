@@ -37,7 +37,7 @@ std::string lockstep_transcript(int threads) {
   const RunResult result = runtime.run();
   EXPECT_EQ(result.reason, "enough");
   EXPECT_FALSE(result.failed);
-  // 100 messages of four sources at 10 Hz: the 25th step, at 2.5 s.
+  // 100 messages of four sources at 10 Hz: the 25th tick, at 2.5 s.
   EXPECT_EQ(result.end, Time::from_nanoseconds(2'500'000'000));
   return transcript;
 }
@@ -49,14 +49,14 @@ TEST(Lockstep, SameTranscriptOnAnyNumberOfThreads) {
   EXPECT_EQ(one, lockstep_transcript(4));
 }
 
-TEST(Lockstep, EndsWhenNothingIsLeftToDo) {
+TEST(Lockstep, EndsWithoutMessagesAndTimers) {
   Registry registry = test::standard_registry();
   test::add_sink(registry, [](Context&, const Plan&) {});
   GraphSpec graph;
   graph.components = {spec("r", "relay"), spec("sink", "sink")};
   graph.external = {"tracker/tracks"};
   Runtime runtime(graph, registry, {.clock = ClockMode::kLockstep});
-  EXPECT_EQ(runtime.run().reason, "nothing is left to do");
+  EXPECT_EQ(runtime.run().reason, "no message or timer is left");
 }
 
 TEST(Lockstep, MessagesOfConstructorsArriveAfterAllAreConstructed) {
@@ -77,7 +77,7 @@ TEST(Lockstep, MessagesOfConstructorsArriveAfterAllAreConstructed) {
   EXPECT_EQ(plans, 1);
 }
 
-TEST(Lockstep, AFullMailboxDropsItsOldestAndCounts) {
+TEST(Lockstep, AFullMailboxDropsAndCountsItsOldestMessage) {
   Registry registry = test::standard_registry();
   ComponentClass burst{.name = "burst"};
   burst.description.output<msgs::topics::Tracks>();
@@ -107,7 +107,7 @@ TEST(Lockstep, AFullMailboxDropsItsOldestAndCounts) {
   EXPECT_EQ(status[1].inputs[0].dropped, 12 - depth);
 }
 
-TEST(Runtime, AThrowingCallbackStopsTheRunAndSaysWho) {
+TEST(Runtime, AThrowingCallbackStopsTheRunAndIsNamed) {
   for (const ClockMode clock : {ClockMode::kLockstep, ClockMode::kReal}) {
     Registry registry = test::standard_registry();
     test::add_sink(registry, [](Context&, const Plan&) { throw std::runtime_error("broken"); });
@@ -129,7 +129,7 @@ TEST(Runtime, AThrowingConstructorNamesTheComponent) {
             "graph.yaml:1: b: no such device");
 }
 
-TEST(Runtime, UndescribedPortIsAnError) {
+TEST(Runtime, AnUndescribedPortIsAnError) {
   Registry registry;
   ComponentClass sly{.name = "sly"};
   sly.make = [](Context& context) {
@@ -185,7 +185,7 @@ TEST(Realtime, StopsFromAnotherThread) {
   stopper.join();
 }
 
-TEST(Realtime, HandsOverTheSameObject) {
+TEST(Realtime, DeliversTheSameObject) {
   Registry registry = test::standard_registry();
   const void* sent = nullptr;
   std::set<const void*> received;

@@ -1,4 +1,5 @@
-// Lock-step over several processes, each a runtime on a thread of its own, joined in memory.
+// Lock-step of several processes. Each process is a runtime on a thread of the test; a network in
+// memory connects them.
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,7 @@ using furrow_msgs::msg::Plan;
 using furrow_msgs::msg::Tracks;
 using test::spec;
 
-/// Answers every second plan with tracks of its own, so that there is a cycle over processes.
+/// Answers every second plan with tracks, which makes a cycle over processes.
 class Echo final : public Component {
  public:
   static void describe(Description& d) {
@@ -37,8 +38,8 @@ class Echo final : public Component {
   }
 };
 
-/// Three sources at different rates, a relay, two components that answer it, and a sink that notes
-/// what it sees and ends the run.
+/// Three sources at different rates, a relay, two components that answer it, and a sink that
+/// records the plans and ends the run.
 GraphSpec cyclic_graph() {
   GraphSpec graph;
   constexpr std::array<double, 3> kRates_hz = {10.0, 25.0, 40.0};
@@ -83,7 +84,7 @@ Outcome run_process(const GraphSpec& graph, const std::vector<PlacedProcess>& pr
   return outcome;
 }
 
-/// Runs every process; the transcript of all of them together.
+/// Runs every process and returns their transcripts together.
 std::string transcript(const std::vector<std::vector<std::string>>& components,
                        std::uint64_t network_seed, int threads) {
   const GraphSpec graph = cyclic_graph();
@@ -110,7 +111,7 @@ std::string transcript(const std::vector<std::vector<std::string>>& components,
   return all;
 }
 
-TEST(SharedLockstep, OneTranscriptWhereverTheComponentsLive) {
+TEST(SharedLockstep, GivesOneTranscriptForEveryPlacement) {
   const std::string alone = transcript({{"s0", "s1", "s2", "e0", "r", "e1", "sink"}}, 1, 1);
   ASSERT_GE(std::count(alone.begin(), alone.end(), '\n'), 200);
   EXPECT_NE(alone.find("echo:e0s1"), std::string::npos);
@@ -134,7 +135,7 @@ std::vector<PlacedProcess> two_processes() {
           {.name = "two", .components = {"e1", "sink"}}};
 }
 
-TEST(SharedLockstep, AProcessThatRunsSomethingElseIsNotedByBoth) {
+TEST(SharedLockstep, BothProcessesReportADifferentSeed) {
   test::MemoryNetwork network(1);
   test::MemoryNetwork::Endpoint first(network, 0);
   test::MemoryNetwork::Endpoint second(network, 1);
@@ -192,7 +193,7 @@ TEST(SharedLockstep, AnInterruptionEndsAllProcesses) {
   signal.join();
 }
 
-TEST(SharedLockstep, AFailureElsewhereIsTheFailureOfAll) {
+TEST(SharedLockstep, AFailureInOneProcessEndsAll) {
   test::MemoryNetwork network(1);
   test::MemoryNetwork::Endpoint first(network, 0);
   test::MemoryNetwork::Endpoint second(network, 1);
@@ -230,7 +231,7 @@ Step sample_step() {
   return step;
 }
 
-TEST(Step, IsReadAsItWasWritten) {
+TEST(Step, RoundTripsThroughCdr) {
   const Step step = sample_step();
   std::vector<std::byte> bytes(step_type().serialized_size(&step));
   ASSERT_TRUE(step_type().serialize(&step, bytes).ok());
@@ -250,7 +251,7 @@ TEST(Step, IsReadAsItWasWritten) {
   EXPECT_EQ(copy.messages[1].component, 5u);
 }
 
-TEST(Step, CutShortOrOverfullIsAnError) {
+TEST(Step, TruncatedOrOversizedDataIsAnError) {
   const Step step = sample_step();
   std::vector<std::byte> bytes(step_type().serialized_size(&step));
   ASSERT_TRUE(step_type().serialize(&step, bytes).ok());
@@ -258,7 +259,7 @@ TEST(Step, CutShortOrOverfullIsAnError) {
     Step copy;
     EXPECT_FALSE(step_type().deserialize(std::span(bytes).first(size), &copy).ok()) << size;
   }
-  // A length that no buffer could hold.
+  // A length greater than any buffer.
   std::vector<std::byte> huge = bytes;
   std::ranges::fill(huge.begin() + 4, huge.end(), std::byte{0x7F});
   Step copy;

@@ -1,4 +1,4 @@
-// The seam to the middleware, with a transport that only notes what it is asked to do.
+// The graph with a transport that records its calls.
 
 #include <map>
 
@@ -11,14 +11,15 @@ namespace {
 
 using test::spec;
 
-class NotingTransport final : public Transport {
+class RecordingTransport final : public Transport {
  public:
   struct Writer final : TransportWriter {
-    Writer(NotingTransport& noting, std::string name) : owner(noting), topic(std::move(name)) {}
-    [[nodiscard]] bool has_readers() const override { return owner.outside_readers; }
+    Writer(RecordingTransport& recording, std::string name)
+        : owner(recording), topic(std::move(name)) {}
+    [[nodiscard]] bool has_readers() const override { return owner.external_subscribers; }
     void write(MessagePtr message) override { owner.written[topic].push_back(std::move(message)); }
     [[nodiscard]] TransportCounters counters() const override { return {}; }
-    NotingTransport& owner;
+    RecordingTransport& owner;
     std::string topic;
   };
   struct Reader final : TransportReader {
@@ -37,23 +38,23 @@ class NotingTransport final : public Transport {
     return std::make_unique<Reader>();
   }
 
-  bool outside_readers = false;
+  bool external_subscribers = false;
   std::map<std::string, std::vector<MessagePtr>> written;
   std::map<std::string, std::function<void(MessagePtr)>> readers;
 };
 
-GraphSpec chain() {
+GraphSpec source_relay_sink() {
   GraphSpec graph;
   graph.components = {spec("s", "source"), spec("r", "relay"), spec("sink", "sink")};
   return graph;
 }
 
-void run_three_plans(NotingTransport& transport, std::vector<std::string> components) {
+void run_three_plans(RecordingTransport& transport, std::vector<std::string> components) {
   Registry registry = test::standard_registry();
   test::add_sink(registry, [](Context& context, const furrow_msgs::msg::Plan& plan) {
     if (plan.revision() == 3) context.request_stop("enough");
   });
-  Runtime runtime(chain(), registry,
+  Runtime runtime(source_relay_sink(), registry,
                   {.clock = ClockMode::kLockstep,
                    .components = std::move(components),
                    .transport = &transport});
@@ -63,39 +64,39 @@ void run_three_plans(NotingTransport& transport, std::vector<std::string> compon
   runtime.run();
 }
 
-TEST(Transport, NothingIsWrittenWithoutAnOutsideReader) {
-  NotingTransport transport;
+TEST(Transport, NothingIsWrittenWithoutAnExternalSubscriber) {
+  RecordingTransport transport;
   run_three_plans(transport, {});
   EXPECT_TRUE(transport.written.empty());
-  EXPECT_TRUE(transport.readers.empty());  // every topic is published inside
+  EXPECT_TRUE(transport.readers.empty());  // this process publishes every topic
 }
 
-TEST(Transport, AnOutsideReaderGetsWhatIsPublished) {
-  NotingTransport transport;
-  transport.outside_readers = true;
+TEST(Transport, AnExternalSubscriberGetsEveryMessage) {
+  RecordingTransport transport;
+  transport.external_subscribers = true;
   run_three_plans(transport, {});
   EXPECT_EQ(transport.written["tracker/tracks"].size(), 3u);
   EXPECT_EQ(transport.written["planner/plan"].size(), 3u);
 }
 
-TEST(Transport, WhatAnotherProcessPublishesIsRead) {
-  NotingTransport transport;
+TEST(Transport, ReadsTopicsOfOtherProcesses) {
+  RecordingTransport transport;
   run_three_plans(transport, {"r", "sink"});
   ASSERT_EQ(transport.readers.size(), 1u);
   EXPECT_TRUE(transport.readers.contains("tracker/tracks"));
 }
 
-/// The CDR forms of what is published on `diagnostics` in 2.5 s of simulated time.
+/// The messages on `diagnostics` in 2.5 s of simulated time, in CDR form.
 std::vector<std::vector<std::byte>> diagnostics(int threads) {
-  NotingTransport transport;
-  transport.outside_readers = true;
+  RecordingTransport transport;
+  transport.external_subscribers = true;
   Registry registry = test::standard_registry();
   test::add_sink(registry, [](Context& context, const furrow_msgs::msg::Plan& plan) {
     context.count("plans");
     if (plan.revision() % 2 == 0) context.health(HealthLevel::kWarn, "even");
     if (plan.revision() == 25) context.request_stop("enough");
   });
-  Runtime runtime(chain(), registry,
+  Runtime runtime(source_relay_sink(), registry,
                   {.clock = ClockMode::kLockstep,
                    .threads = threads,
                    .transport = &transport,
@@ -111,14 +112,14 @@ std::vector<std::vector<std::byte>> diagnostics(int threads) {
   return forms;
 }
 
-TEST(Transport, HealthIsPublishedEverySecondWithoutFiguresOfTheWallClock) {
+TEST(Transport, PublishesHealthEverySecondWithoutWallClockTimes) {
   const auto forms = diagnostics(1);
   ASSERT_EQ(forms.size(), 2u);
   EXPECT_EQ(forms, diagnostics(3));
   diagnostic_msgs::msg::DiagnosticArray array;
   ASSERT_TRUE(msgs::topics::Diagnostics::topic().type->deserialize(forms[0], &array).ok());
   EXPECT_EQ(array.header().stamp().sec(), 1);
-  // A status for each component; none for the transport, whose figures are not of simulated time.
+  // A status for each component; none for the transport, whose counters depend on wall-clock time.
   ASSERT_EQ(array.status().size(), 3u);
   const auto& sink = array.status()[2];
   EXPECT_EQ(sink.name(), "p: sink");
@@ -127,7 +128,7 @@ TEST(Transport, HealthIsPublishedEverySecondWithoutFiguresOfTheWallClock) {
   EXPECT_EQ(sink.message(), "even");
   std::map<std::string, std::string> values;
   for (const auto& value : sink.values()) values[value.key()] = value.value();
-  // What was published at whole tenths before the first second: nine plans.
+  // Nine plans, at the tenths of a second before the first second.
   EXPECT_EQ(values["count/plans"], "9");
   EXPECT_EQ(values["received"], "9");
   EXPECT_EQ(values["dropped"], "0");

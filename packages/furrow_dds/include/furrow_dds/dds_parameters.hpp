@@ -8,7 +8,7 @@
 
 namespace furrow::dds {
 
-/// How one process takes part in a DDS domain.
+/// Settings of one process in a DDS domain.
 struct DdsParameters {
   std::int64_t domain_id = 0;
   std::string process_name = "furrow";
@@ -25,6 +25,14 @@ struct DdsParameters {
   double linger_s = 0.1;
 
   void visit(ParameterVisitor& v) {
+    visit_participant(v);
+    visit_discovery(v);
+    visit_resources(v);
+    visit_sending(v);
+  }
+
+ private:
+  void visit_participant(ParameterVisitor& v) {
     v.visit({.name = "domain_id",
              .description = "DDS domain; only processes of one domain see each other",
              .min = 0,
@@ -36,12 +44,15 @@ struct DdsParameters {
              .description = "\"shm\" (same host), \"udp\", or both; processes need a common one"},
             transports);
     v.visit({.name = "shm_types",
-             .description = "types whose messages use shared memory where both transports are "
-                            "there; all others go over UDP, which a dying process cannot damage"},
+             .description = "with both transports, types whose messages use shared memory; "
+                            "others use UDP, which a crashing process cannot damage"},
             shm_types);
     v.visit({.name = "interfaces",
              .description = "IPv4 addresses of this host that UDP may use; empty: all of them"},
             interfaces);
+  }
+
+  void visit_discovery(ParameterVisitor& v) {
     v.visit({.name = "discovery",
              .description = "how processes find each other",
              .choices = {"multicast", "static_peers", "discovery_server"}},
@@ -51,10 +62,13 @@ struct DdsParameters {
                             "(static_peers), or the servers in the order of their ids "
                             "(discovery_server, port 11811 unless given)"},
             peers);
+  }
+
+  void visit_resources(ParameterVisitor& v) {
     v.visit({.name = "shm_segment_mb",
              .unit = "MB",
-             .description = "shared memory of this process for messages on their way, taken at "
-                            "once; at least twice the largest",
+             .description = "shared memory of this process for messages being sent, allocated at "
+                            "the start; at least twice the largest message",
              .min = 1,
              .max = 4000},
             shm_segment_mb);
@@ -64,28 +78,32 @@ struct DdsParameters {
              .min = 64,
              .max = 1048576},
             socket_buffer_kb);
-    v.visit({.name = "lease_s",
-             .unit = "s",
-             .description = "after this silence a process counts as gone; announced three times "
-                            "as often",
-             .min = 0.3,
-             .max = 3600},
-            lease_s);
+    v.visit(
+        {.name = "lease_s",
+         .unit = "s",
+         .description = "after this silence a process counts as gone; it announces itself three "
+                        "times as often",
+         .min = 0.3,
+         .max = 3600},
+        lease_s);
+  }
+
+  void visit_sending(ParameterVisitor& v) {
     v.visit({.name = "bulk_threshold_kb",
              .unit = "kB",
-             .description = "topics with larger messages are sent by a thread of their own",
+             .description = "topics with larger messages are sent by a second thread",
              .min = 1,
              .max = 1048576},
             bulk_threshold_kb);
-    v.visit({.name = "queue_limit",
-             .description = "messages of one topic that wait to be sent: its depth, at most this",
-             .min = 1,
-             .max = 100000},
-            queue_limit);
+    v.visit(
+        {.name = "queue_limit",
+         .description = "limit of each topic's send queue, which otherwise has the topic's depth",
+         .min = 1,
+         .max = 100000},
+        queue_limit);
     v.visit({.name = "linger_s",
              .unit = "s",
-             .description = "time that all writers together may take at shutdown to deliver what "
-                            "still waits",
+             .description = "time for all writers together to deliver waiting messages at shutdown",
              .min = 0,
              .max = 10},
             linger_s);

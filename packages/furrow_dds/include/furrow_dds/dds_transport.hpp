@@ -38,20 +38,20 @@ struct EndpointStatus {
   std::string incompatibility;  ///< TransportFault::detail of the last one
 };
 
-/// One participant of a DDS domain: how a process reaches others. Topics are "rt/NAME" in DDS,
-/// with ROS 2's type names, so that ROS 2 and other DDS programs take part.
+/// One participant of a DDS domain, which connects a process with others. Topics are "rt/NAME" in
+/// DDS, with ROS 2's type names, so that ROS 2 and other DDS programs take part.
 ///
-/// Writers send from two threads of the transport, one for topics with large messages, so that an
-/// image does not hold up a command. Serialization is done there, never on the publishing thread.
-/// A TRANSIENT_LOCAL topic must be written also while has_readers() is false: late joiners get its
-/// last messages. Volatile messages without a reader are let go at once and not counted.
+/// Two threads serialize and send, one of them for topics with large messages. So an image does not
+/// delay a command, and the publishing thread never serializes. Write a TRANSIENT_LOCAL topic also
+/// while has_readers() is false: late joiners get its last messages. A volatile message without a
+/// reader is dropped and not counted.
 ///
 /// Endpoints must be destroyed before the transport. Two transports in one process count as two
 /// processes.
 class DdsTransport final : public graph::Transport {
  public:
-  /// Joins the domain. Throws ConfigError when a parameter is out of range, an address malformed
-  /// or the participant refused.
+  /// Joins the domain. Throws ConfigError if a parameter is out of range, an address is malformed
+  /// or DDS refuses the participant, and std::system_error if a thread cannot be started.
   explicit DdsTransport(const DdsParameters& parameters);
   ~DdsTransport() override;
 
@@ -67,8 +67,8 @@ class DdsTransport final : public graph::Transport {
   [[nodiscard]] std::unique_ptr<RawWriter> make_raw_writer(const std::string& topic,
                                                            const std::string& type_name,
                                                            const msgs::Qos& qos);
-  /// A reader gets messages only when it asks for no more than the writer offers: take the
-  /// writer's reliability and durability from the discovery, and no deadline.
+  /// A reader gets messages only if it requests no more than the writer offers. Use the reliability
+  /// and durability that discovery() lists for the writer, and no deadline.
   [[nodiscard]] std::unique_ptr<RawReader> make_raw_reader(
       const std::string& topic, const std::string& type_name, const msgs::Qos& qos,
       std::function<void(RawMessage)> on_message);
@@ -77,13 +77,13 @@ class DdsTransport final : public graph::Transport {
   /// DiscoverySnapshot::version, without the snapshot.
   [[nodiscard]] std::uint64_t discovery_version() const;
 
-  /// Called on the transport's thread and must only enqueue. Empty: no more calls.
+  /// The receive thread calls `callback`, which must not block. An empty one ends the calls.
   void on_fault(std::function<void(const TransportFault&)> callback);
-  /// Every endpoint that is there now, in the order they were made.
+  /// The existing endpoints, in the order of their construction.
   [[nodiscard]] std::vector<EndpointStatus> status() const;
 
-  /// Waits until every queue is empty and reliable readers acknowledged; false when `timeout`
-  /// passed before.
+  /// Waits until every queue is empty and all reliable readers have acknowledged. False after
+  /// `timeout`.
   [[nodiscard]] bool flush(Duration timeout);
 
  private:

@@ -12,7 +12,7 @@
 
 namespace furrow::dds {
 
-/// One message as it came, its type unknown.
+/// One message as bytes, of any type.
 struct RawMessage {
   std::vector<std::byte>
       payload;          ///< encapsulation header (4 bytes), CDR form, up to 3 bytes of padding
@@ -23,26 +23,25 @@ struct RawMessage {
 
 using RawPayload = std::shared_ptr<const std::vector<std::byte>>;
 
-/// Reads any topic, for recorders and tools. What this process publishes itself is left out.
+/// Reads any topic, for recorders and tools. Messages of this process are left out.
 class RawReader {
  public:
   virtual ~RawReader() = default;
   [[nodiscard]] virtual graph::TransportCounters counters() const = 0;
-  /// Writers outside this process that are matched now.
+  /// The number of matched writers of other processes.
   [[nodiscard]] virtual int writers() const = 0;
 };
 
-/// Writes any topic, for players. As graph::TransportWriter, with bytes in place of messages.
+/// Writes any topic, for players. As graph::TransportWriter, with bytes instead of messages.
 class RawWriter {
  public:
   virtual ~RawWriter() = default;
   [[nodiscard]] virtual bool has_readers() const = 0;
-  /// `payload`: the CDR form behind its encapsulation header. Shorter ones than that, and null, are
-  /// dropped and counted.
+  /// `payload`: encapsulation header and CDR form. A shorter payload, or null, is dropped and
+  /// counted.
   virtual void write(RawPayload payload) = 0;
-  /// Sends on the calling thread, past the queue, and may block: the plain middleware, for
-  /// measuring. False when it was refused. Not for use beside write(): they may overtake each
-  /// other.
+  /// Sends on the calling thread without the queue, and may block: plain DDS, for benchmarks. False
+  /// if DDS refused the message. Do not mix with write(), which it may overtake.
   [[nodiscard]] virtual bool write_now(const std::vector<std::byte>& payload) = 0;
   [[nodiscard]] virtual graph::TransportCounters counters() const = 0;
 };

@@ -11,9 +11,9 @@
 
 namespace furrow::dds {
 
-/// For tests: a DDS domain that no other test on this host uses as long as this process lives, by a
-/// lock on a file of the temporary folder. From 10 to 100: the ports of those above are given to
-/// anybody. Throws std::runtime_error when all are in use.
+/// For tests: a DDS domain from 10 to 100 that no other test on this host uses while this process
+/// lives. It locks a file in the temporary folder. The ports of domains above 100 are ephemeral.
+/// Throws std::runtime_error if all domains are in use.
 [[nodiscard]] inline std::int64_t test_domain() {
   static const std::int64_t claimed = [] {
     constexpr int kFirst = 10;
@@ -26,7 +26,7 @@ namespace furrow::dds {
       if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return domain;
       if (file >= 0) ::close(file);
     }
-    throw std::runtime_error("other tests use all domains");
+    throw std::runtime_error("all DDS domains from 10 to 100 are used by other tests");
   }();
   return claimed;
 }

@@ -1,8 +1,9 @@
-/* A Cyclone DDS program beside Furrow, until its standard input ends. It answers on
- * rt/cyclone/answer with odometry: to each image on rt/camera/image with its height, width and the
- * sum of its bytes as the position; to odometry on rt/localization/odometry with the position and
- * speed doubled, and on rt/cyclone/image, best effort as a camera driver, with an image of one pixel
- * that has the frame of the odometry.
+/* A Cyclone DDS program for tests. It runs until its standard input ends.
+ * - It answers an image on rt/camera/image with odometry on rt/cyclone/answer. Height, width and the
+ *   sum of the bytes are the position.
+ * - It answers odometry on rt/localization/odometry with doubled position and speed.
+ * - It also answers odometry with an image of one pixel and the same frame, on rt/cyclone/image.
+ *   That writer offers best effort, as a camera driver does.
  *
  * usage: cyclone_peer DOMAIN */
 #include <dds/dds.h>

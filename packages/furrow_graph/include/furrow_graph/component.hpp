@@ -2,14 +2,14 @@
 
 namespace furrow::graph {
 
-/// A node of the graph: it takes messages in, calls an algorithm, and publishes what comes back.
+/// A node of the graph: it receives messages, calls an algorithm, and publishes the result.
 ///
 /// A class `Planner` derives from this and has
 ///   static void describe(Description& description);  // ports and parameters
 ///   explicit Planner(Context& context);              // binds them; ConfigError on bad values
 ///
-/// Its callbacks never overlap, so that it needs no mutex, and none is called before every
-/// component of the process is constructed or after one is destroyed. The Context outlives it.
+/// Its callbacks never overlap, so it needs no mutex. They run only while all components of the
+/// process exist. The Context outlives the component.
 class Component {
  public:
   Component() = default;

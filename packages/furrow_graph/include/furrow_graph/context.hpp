@@ -17,16 +17,16 @@
 
 namespace furrow::graph {
 
-/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context. Readers
-/// are called, and messages leave the process, when the callback has returned: publish last.
+/// The publishing end of a topic. Cheap to copy; lives as long as its component's Context.
 template <class T>
 class Output {
  public:
   using Message = typename T::Message;
 
-  /// Hands the message to every input of this process without a copy, and to the transport when
-  /// somebody outside reads it. From then on nobody may change it. Call it from the component's
-  /// callbacks or constructor only.
+  /// Delivers the message to every input of this process without a copy, and to the transport if
+  /// another process reads the topic. The message must not change from then on. Call it from the
+  /// component's callbacks or constructor only. In real time the readers may run at once, on other
+  /// threads; in lock-step they run after the callback.
   void publish(std::shared_ptr<const Message> message) const { send_(std::move(message)); }
   void publish(Message message) const {
     publish(std::make_shared<const Message>(std::move(message)));
@@ -38,20 +38,20 @@ class Output {
   std::function<void(MessagePtr)> send_;
 };
 
-/// What a component is given at construction and keeps by reference. Not thread-safe: for the
-/// component's own constructor and callbacks.
+/// A component gets its Context at construction and keeps it by reference. Not thread-safe: for
+/// the component's own constructor and callbacks.
 class Context {
  public:
   virtual ~Context() = default;
 
   /// The component's name in the graph.
   [[nodiscard]] virtual const std::string& name() const = 0;
-  /// The time of the graph's clock: of the current step in lock-step, else Unix time.
+  /// The time of the graph's clock: that of the simulation step in lock-step, else Unix time.
   [[nodiscard]] virtual Time now() const = 0;
-  /// When the message of the current callback came, on the same clock: before now() where it had to
-  /// wait for a thread. @pre Within a callback of an input.
+  /// When the message of the current callback arrived, on the same clock. It is before now() if the
+  /// message waited for a thread. @pre Within a callback of an input.
   [[nodiscard]] virtual Time arrival() const = 0;
-  /// The seed of the run; draw streams by the component's name.
+  /// The seed of the run. Draw random streams by the component's name.
   [[nodiscard]] virtual std::uint64_t seed() const = 0;
 
   /// The component's parameters, checked and loaded over the defaults.
@@ -62,8 +62,9 @@ class Context {
     return parameters;
   }
 
-  /// Calls back for each message, in the order of arrival over all inputs of the component. When
-  /// `depth` messages wait the oldest is dropped, counted; without it, as the topic's QoS says.
+  /// Calls back for each message, in the order of arrival over all inputs of the component. If
+  /// `depth` messages already wait, the oldest is dropped and counted. The default depth is that of
+  /// the topic's QoS.
   template <class T>
   void input(std::function<void(const std::shared_ptr<const typename T::Message>&)> callback,
              std::optional<int> depth = {}) {
@@ -78,15 +79,15 @@ class Context {
   [[nodiscard]] Output<T> output() {
     return Output<T>(bind_output(T::topic()));
   }
-  /// Calls back every `period`, first one period after the start, at whole multiples of it. A
-  /// callback that comes too late is left out, and counted.
+  /// Calls back at whole multiples of `period` after the start. A tick is skipped and counted if
+  /// the call of the one before has not begun.
   virtual void every(Duration period, std::function<void(Time)> callback) = 0;
 
   /// Sets the level that diagnostics show; kOk with an empty message clears it.
   virtual void health(HealthLevel level, std::string_view message) = 0;
   /// Adds to a counter that diagnostics show.
   virtual void count(std::string_view counter, std::int64_t by = 1) = 0;
-  /// Ends the run in good order, after the current callbacks. The reason is told to the user.
+  /// Ends the run after the current callbacks. The user sees the reason.
   virtual void request_stop(std::string_view reason) = 0;
 
  protected:

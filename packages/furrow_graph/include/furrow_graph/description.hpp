@@ -13,11 +13,11 @@ enum class Need : std::uint8_t { kRequired, kOptional };
 
 struct PortInfo {
   const msgs::Topic* topic = nullptr;  ///< its name is the port's name, which a graph may remap
-  Need need = Need::kRequired;         ///< inputs: whether somebody must publish it
+  Need need = Need::kRequired;         ///< inputs: whether the graph must publish it
 };
 
-/// What a component class says of itself, without being constructed: enough to check a whole graph
-/// and to generate its documentation.
+/// Ports and parameters of a component class, known without an instance: enough to check a whole
+/// graph and to generate its documentation.
 class Description {
  public:
   Description& doc(std::string_view text) {

@@ -8,7 +8,7 @@
 
 namespace furrow::graph {
 
-/// Who publishes and who reads a topic, by the names of the components.
+/// The components that publish and read a topic, by name.
 struct Connection {
   std::string topic;
   const msgs::MessageType* type = nullptr;
@@ -17,18 +17,17 @@ struct Connection {
   std::vector<std::string> readers;
 };
 
-/// Checks a whole expanded graph, whatever process its components live in: unknown class, unknown
-/// or out-of-range parameter, a remap of a port that is not there, a required input that nobody
-/// publishes, a type or QoS mismatch. Throws ConfigError with file, line and key. Returns the
-/// wiring, sorted by topic.
+/// Checks a whole expanded graph, in every process: unknown classes, parameters and ports,
+/// parameters out of range, required inputs without a publisher, types and QoS that do not match.
+/// Throws ConfigError with file, line and key. Returns the connections, sorted by topic.
 std::vector<Connection> check_graph(const GraphSpec& graph, Registry& registry);
 
-/// The parameters that a component gets: its own, and those common ones that its class declares.
+/// The parameters of a component: its own, and the common ones that its class declares.
 [[nodiscard]] std::vector<GivenParameter> parameters_of(const ComponentSpec& component,
                                                         const GraphSpec& graph,
                                                         const Description& description);
 
-/// The topic that a port is wired to.
+/// The topic that a port is connected to.
 [[nodiscard]] std::string resolved_topic(const ComponentSpec& component, const msgs::Topic& port);
 
 }  // namespace furrow::graph

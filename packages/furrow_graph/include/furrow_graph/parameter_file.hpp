@@ -17,10 +17,10 @@ namespace furrow::graph {
 [[nodiscard]] std::vector<std::vector<GivenParameter>> read_parameter_list(
     const std::filesystem::path& path, std::string_view list);
 
-/// One value as text gives it: `true`, `3`, `0.5`, `[1, 2]`, else a string.
+/// The value of a text: `true`, `3`, `0.5`, `[1, 2]`, else a string.
 [[nodiscard]] ParameterValue parse_parameter_value(std::string_view text);
 
-/// A struct of parameters from its file, checked.
+/// Reads and checks a struct of parameters.
 template <class Parameters>
 [[nodiscard]] Parameters load_parameter_file(const std::filesystem::path& path) {
   Parameters parameters;

@@ -14,14 +14,14 @@
 
 namespace furrow::graph {
 
-/// A component class: how it describes itself and how it is made.
+/// A component class: its description and its factory.
 struct ComponentClass {
   std::string name;
   Description description;
   std::function<std::unique_ptr<Component>(Context&)> make;
 };
 
-/// The component classes that this process knows. A library of components exports
+/// The component classes of a process. A library of components exports
 ///   extern "C" void furrow_register(furrow::graph::Registry& registry) {
 ///     registry.add<Planner>("planner");
 ///   }
@@ -34,15 +34,14 @@ class Registry {
     entry.make = [](Context& context) { return std::make_unique<C>(context); };
     add(std::move(entry));
   }
-  /// Throws ConfigError when the name is taken.
+  /// Throws ConfigError if the name is taken.
   void add(ComponentClass entry);
 
-  /// Loads a library and lets it register its classes; it stays loaded, and loading
-  /// it again does nothing. Throws ConfigError with the
-  /// loader's reason, or when `furrow_register` is not in it.
+  /// Loads a library, which registers its classes and stays loaded. Loading it again has no effect.
+  /// Throws ConfigError with the loader's reason, or if it has no `furrow_register`.
   void load_library(const std::filesystem::path& path);
-  /// The class, loading "libfurrow_component_NAME.so" from the search folders when it is not known
-  /// yet. Throws ConfigError that names the folders looked at.
+  /// The class. Loads "libfurrow_component_NAME.so" from the search folders if it is not known yet.
+  /// Throws ConfigError with the searched folders.
   const ComponentClass& find(const std::string& name, const SourceLocation& where);
   void add_search_folder(std::filesystem::path folder);
 

@@ -15,7 +15,7 @@
 namespace furrow::graph {
 
 enum class ClockMode : std::uint8_t {
-  kLockstep,  ///< simulated time, as fast as it goes, the same bytes on any number of threads
+  kLockstep,  ///< simulated time, as fast as possible; the same bytes on any number of threads
   kReal,      ///< the computer's clock
 };
 
@@ -24,9 +24,9 @@ struct RuntimeOptions {
   int threads = 2;
   std::uint64_t seed = 1;
   std::vector<std::string> components;            ///< of this process; empty: all
-  Transport* transport = nullptr;                 ///< none: nothing leaves the process
-  std::string process;                            ///< this one's name
-  std::vector<PlacedProcess> processes = {};      ///< of the whole deployment; empty: only this one
+  Transport* transport = nullptr;                 ///< null: no message leaves it
+  std::string process;                            ///< its name
+  std::vector<PlacedProcess> processes = {};      ///< the whole deployment; empty: one
   std::function<Health()> transport_health = {};  ///< for the diagnostics; called once a second
 };
 
@@ -36,7 +36,7 @@ struct InputStatus {
   std::uint64_t dropped = 0;
 };
 
-/// What one component did so far.
+/// Counters of one component since the start.
 struct ComponentStatus {
   std::string name;
   std::string class_name;
@@ -44,13 +44,13 @@ struct ComponentStatus {
   std::vector<InputStatus> inputs;
   std::uint64_t callbacks = 0;
   std::uint64_t missed_timers = 0;
-  double busy_s = 0.0;  ///< wall-clock time inside callbacks
+  double busy_s = 0.0;  ///< wall-clock time within callbacks
   double longest_call_s = 0.0;
-  std::uint64_t timers = 0;  ///< timer callbacks that were called
-  Duration timer_late_p50;   ///< how late they were called; 0 in lock-step
+  std::uint64_t timers = 0;  ///< calls of timer callbacks
+  Duration timer_late_p50;   ///< delay of these calls; 0 in lock-step
   Duration timer_late_p99;
   Duration timer_late_max;
-  std::string thread;  ///< "pool", or "dedicated" with what was granted or refused
+  std::string thread;  ///< "pool", or "dedicated" with the granted or refused priority
 };
 
 struct RunResult {
@@ -60,8 +60,8 @@ struct RunResult {
 };
 
 /// The components of one process and the executor that calls them. Construction checks the whole
-/// graph and throws ConfigError; destruction stops the executor before any component goes. Every
-/// second of the graph's clock it publishes the health of its components on `diagnostics`.
+/// graph and throws ConfigError. Every second of the graph's clock it publishes the health of its
+/// components on `diagnostics`.
 class Runtime {
  public:
   Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOptions& options);
@@ -69,14 +69,15 @@ class Runtime {
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
 
-  /// Runs until a component or request_stop() ends it; in lock-step also when nothing is left to
-  /// do. To be called once.
+  /// Runs until a component or request_stop() ends it. In lock-step it also ends without pending
+  /// messages and timers. Call it once.
   RunResult run();
   /// From any thread.
   void request_stop(std::string_view reason);
-  /// Of the components of the graph that live here. From any thread.
+  /// Of the graph's components in this process. From any thread.
   [[nodiscard]] std::vector<ComponentStatus> status() const;
-  /// Whether every other process that this one reads from or writes to is there. From any thread.
+  /// True if this process is matched with every process that it reads from or writes to. From any
+  /// thread.
   [[nodiscard]] bool connected() const;
 
  private:

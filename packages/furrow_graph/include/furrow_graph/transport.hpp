@@ -48,7 +48,7 @@ class Transport {
   [[nodiscard]] virtual std::unique_ptr<TransportWriter> make_writer(const std::string& topic,
                                                                      const msgs::MessageType& type,
                                                                      const msgs::Qos& qos) = 0;
-  /// As make_writer(). A receive thread of the transport calls `on_message`, which must not block.
+  /// As make_writer(). The receive thread calls `on_message`, which must not block.
   [[nodiscard]] virtual std::unique_ptr<TransportReader> make_reader(
       const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
       std::function<void(MessagePtr)> on_message) = 0;
