@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "furrow_graph/runtime.hpp"
 #include "node.hpp"
@@ -20,11 +21,14 @@ class Executor : public NodeHost {
   virtual void deliver_from_transport(const Route::Reader& reader, MessagePtr message) = 0;
   /// Before run(): `callback` is called at every second of the clock, in lock-step between two
   /// simulation steps.
-  virtual void every_second(std::function<void(Time)> callback) = 0;
+  void every_second(std::function<void(Time)> callback) { each_second_ = std::move(callback); }
   /// Ends the run as soon as possible. From any thread.
   virtual void interrupt(std::string_view reason) { request_stop(reason, false); }
   /// Before run(): makes this lock-step one of several processes.
   virtual void share(std::unique_ptr<SharedLockstep> /*shared*/) {}
+
+ protected:
+  std::function<void(Time)> each_second_;
 };
 
 [[nodiscard]] std::unique_ptr<Executor> make_lockstep_executor(int threads);

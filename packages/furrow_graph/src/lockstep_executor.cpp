@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+#include <span>
 
 #include "executor.hpp"
 #include "stop_request.hpp"
@@ -29,10 +30,6 @@ class LockstepExecutor final : public Executor {
     interrupted_ = true;
     stop_.set(reason, false);
     if (shared_ != nullptr) shared_->exchange->abort(std::string(reason));
-  }
-
-  void every_second(std::function<void(Time)> callback) override {
-    each_second_ = std::move(callback);
   }
 
   void share(std::unique_ptr<SharedLockstep> shared) override { shared_ = std::move(shared); }
@@ -101,8 +98,8 @@ class LockstepExecutor final : public Executor {
       for (std::size_t i = 0; i < steps->size(); ++i) {
         const Step* step = (*steps)[i].get();
         if (step == nullptr) continue;
-        if (step->stop) return {step->reason, step->failed, now_};
-        next_timers[i] = Time::from_nanoseconds(step->next_timer_ns);
+        if (step->stop()) return {step->reason(), step->failed(), now_};
+        next_timers[i] = Time::from_nanoseconds(step->next_timer_ns());
       }
       active = woken_by(*steps);
       if (std::ranges::find(active, true) == active.end()) {
@@ -123,7 +120,7 @@ class LockstepExecutor final : public Executor {
     std::vector<bool> woken(steps.size(), false);
     for (const auto& step : steps) {
       if (step == nullptr) continue;
-      for (const std::uint32_t topic : step->topics) {
+      for (const std::uint32_t topic : step->topics()) {
         if (topic >= shared_->topics.size()) continue;
         const std::vector<bool>& read_by = shared_->topics[topic].read_by;
         for (std::size_t i = 0; i < woken.size(); ++i) woken[i] = woken[i] || read_by[i];
@@ -144,13 +141,13 @@ class LockstepExecutor final : public Executor {
   /// This process's part of a step. Its messages are kept in own_ for deliver_all().
   [[nodiscard]] std::shared_ptr<Step> make_step(std::vector<Published> published) {
     auto step = std::make_shared<Step>();
-    step->next_timer_ns = next_timer().count_ns();
+    step->next_timer_ns(next_timer().count_ns());
     // abort() tells the others of an interruption. Here it would reach only some of them in time.
     if (stop_.requested() && !interrupted_) {
       const RunResult result = stop_.result(now_);
-      step->stop = true;
-      step->reason = result.reason;
-      step->failed = result.failed;
+      step->stop(true);
+      step->reason(result.reason);
+      step->failed(result.failed);
     }
     own_.clear();
     for (Published& entry : published) {
@@ -159,17 +156,21 @@ class LockstepExecutor final : public Executor {
       const std::uint32_t component = shared_->component_of_node[index_of(*entry.from)];
       entry.route->write_to_transport(entry.message);
       if (std::ranges::find(topic.read_by, true) != topic.read_by.end()) {
-        step->topics.push_back(index);
+        step->topics().push_back(index);
       }
       if (topic.read_elsewhere) {
-        StepMessage& out = step->messages.emplace_back(StepMessage{index, component, {}});
-        out.cdr.resize(topic.type->serialized_size(entry.message.get()));
-        if (!topic.type->serialize(entry.message.get(), out.cdr).ok()) out.cdr.clear();
+        StepMessage& out = step->messages().emplace_back();
+        out.topic(index);
+        out.publisher(component);
+        out.cdr().resize(topic.type->serialized_size(entry.message.get()));
+        const auto bytes = std::as_writable_bytes(std::span(out.cdr()));
+        if (!topic.type->serialize(entry.message.get(), bytes).ok()) out.cdr().clear();
       }
       own_.push_back({component, index, std::move(entry.message)});
     }
-    std::ranges::sort(step->topics);
-    step->topics.erase(std::unique(step->topics.begin(), step->topics.end()), step->topics.end());
+    std::ranges::sort(step->topics());
+    step->topics().erase(std::unique(step->topics().begin(), step->topics().end()),
+                         step->topics().end());
     return step;
   }
 
@@ -179,13 +180,14 @@ class LockstepExecutor final : public Executor {
     std::vector<Delivery> deliveries = std::exchange(own_, {});
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (i == shared_->exchange->own() || steps[i] == nullptr) continue;
-      for (const StepMessage& message : steps[i]->messages) {
-        if (message.topic >= shared_->topics.size()) return false;
-        const SharedLockstep::Topic& topic = shared_->topics[message.topic];
+      for (const StepMessage& message : steps[i]->messages()) {
+        if (message.topic() >= shared_->topics.size()) return false;
+        const SharedLockstep::Topic& topic = shared_->topics[message.topic()];
         if (topic.readers.empty()) continue;
         std::shared_ptr<void> copy = topic.type->create();
-        if (!topic.type->deserialize(message.cdr, copy.get()).ok()) return false;
-        deliveries.push_back({message.component, message.topic, std::move(copy)});
+        if (!topic.type->deserialize(std::as_bytes(std::span(message.cdr())), copy.get()).ok())
+          return false;
+        deliveries.push_back({message.publisher(), message.topic(), std::move(copy)});
       }
     }
     std::ranges::stable_sort(deliveries, {}, &Delivery::component);
@@ -279,7 +281,6 @@ class LockstepExecutor final : public Executor {
   Mutex transport_mutex_;
   std::vector<std::pair<Route::Reader, MessagePtr>> from_transport_
       FURROW_GUARDED_BY(transport_mutex_);
-  std::function<void(Time)> each_second_;
   std::unique_ptr<SharedLockstep> shared_;
   std::vector<Delivery> own_;
 };

@@ -47,7 +47,6 @@ class Node final : public Context {
   void destroy_component() { component_.reset(); }
 
   [[nodiscard]] const ComponentSpec& spec() const { return spec_; }
-  [[nodiscard]] const ComponentClass& type() const { return type_; }
   /// The index of the input that reads `topic`, if the component has one.
   [[nodiscard]] std::optional<std::size_t> input_of(const std::string& topic) const;
 

@@ -50,10 +50,6 @@ class RealtimeExecutor final : public Executor {
     if (running_) wake(*reader.node);
   }
 
-  void every_second(std::function<void(Time)> callback) override {
-    each_second_ = std::move(callback);
-  }
-
   RunResult run(std::span<const std::unique_ptr<Node>> nodes) override {
     prepare(nodes);
     std::vector<std::thread> workers;
@@ -178,7 +174,6 @@ class RealtimeExecutor final : public Executor {
   const RealtimeClock clock_;
   StopRequest stop_;
   ReadyQueue ready_;
-  std::function<void(Time)> each_second_;
   std::atomic<bool> running_ = false;
   std::vector<std::pair<Route*, MessagePtr>> constructed_;
   std::unordered_map<Node*, std::unique_ptr<DedicatedThread>> dedicated_;  // fixed while running

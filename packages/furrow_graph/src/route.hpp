@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "furrow_graph/transport.hpp"
@@ -28,7 +27,6 @@ struct Route {
     }
   }
 
-  std::string topic;
   msgs::Qos qos;
   std::vector<Reader> readers;              ///< in this process
   std::unique_ptr<TransportWriter> writer;  ///< to other processes; null: no transport

@@ -48,6 +48,14 @@ struct Runtime::Impl {
     return std::ranges::any_of(nodes, [&](const auto& node) { return node->name() == name; });
   }
 
+  [[nodiscard]] std::vector<Route::Reader> readers_of(const std::string& topic) const {
+    std::vector<Route::Reader> readers;
+    for (const auto& node : nodes) {
+      if (const auto input = node->input_of(topic)) readers.push_back({node.get(), *input});
+    }
+    return readers;
+  }
+
   /// The other processes of the deployment with one of these components.
   [[nodiscard]] std::set<std::string> elsewhere(const std::vector<std::string>& components,
                                                 const std::string& own) const {
@@ -82,7 +90,6 @@ struct Runtime::Impl {
           std::ranges::any_of(connection.publishers, [&](const auto& p) { return is_local(p); });
       if (!publishes) continue;
       auto route = std::make_unique<Route>();
-      route->topic = connection.topic;
       route->qos = connection.qos;
       route->topic_index = static_cast<std::uint32_t>(i);
       if (transport != nullptr) {
@@ -98,11 +105,7 @@ struct Runtime::Impl {
   void connect(const RuntimeOptions& options, bool shared) {
     Transport* transport = options.transport;
     for (const Connection& connection : connections) {
-      std::vector<Route::Reader> readers;
-      for (const auto& node : nodes) {
-        if (const auto input = node->input_of(connection.topic))
-          readers.push_back({node.get(), *input});
-      }
+      const std::vector<Route::Reader> readers = readers_of(connection.topic);
       if (readers.empty()) continue;
       if (const auto route = routes.find(connection.topic); route != routes.end()) {
         route->second->readers = readers;
@@ -138,11 +141,7 @@ struct Runtime::Impl {
       diagnostics_writer =
           options.transport->make_writer(std::string(topic.name), *topic.type, topic.qos);
     }
-    for (const auto& node : nodes) {
-      if (const auto input = node->input_of(std::string(topic.name))) {
-        diagnostics_readers.push_back({node.get(), *input});
-      }
-    }
+    diagnostics_readers = readers_of(std::string(topic.name));
     if (diagnostics_writer == nullptr && diagnostics_readers.empty()) return;
     const bool real = options.clock == ClockMode::kReal;
     executor->every_second([this, process = options.process,
@@ -170,17 +169,17 @@ namespace {
 std::uint64_t digest_of(const GraphSpec& graph, const std::vector<Connection>& connections,
                         const RuntimeOptions& options) {
   std::string text = std::to_string(options.seed) + "\n";
+  const auto add = [&text](const std::vector<GivenParameter>& parameters) {
+    for (const auto& [name, value, where] : parameters) {
+      if (name.ends_with("_file") || name.ends_with("_folder")) continue;
+      text += name + "=" + to_text(value) + "\n";
+    }
+  };
   for (const ComponentSpec& component : graph.components) {
     text += component.name + " " + component.class_name + "\n";
-    for (const GivenParameter& parameter : component.parameters) {
-      if (parameter.name.ends_with("_file") || parameter.name.ends_with("_folder")) continue;
-      text += parameter.name + "=" + to_text(parameter.value) + "\n";
-    }
+    add(component.parameters);
   }
-  for (const GivenParameter& parameter : graph.common) {
-    if (parameter.name.ends_with("_file") || parameter.name.ends_with("_folder")) continue;
-    text += parameter.name + "=" + to_text(parameter.value) + "\n";
-  }
+  add(graph.common);
   for (const Connection& connection : connections) text += connection.topic + "\n";
   for (const PlacedProcess& process : options.processes) {
     text += process.name + ":";
@@ -208,11 +207,7 @@ std::unique_ptr<SharedLockstep> Runtime::Impl::make_shared_lockstep(const GraphS
   for (const Connection& connection : connections) {
     SharedLockstep::Topic topic;
     topic.type = connection.type;
-    for (const auto& node : nodes) {
-      if (const auto input = node->input_of(connection.topic)) {
-        topic.readers.push_back({node.get(), *input});
-      }
-    }
+    topic.readers = readers_of(connection.topic);
     topic.read_by.assign(processes.size(), false);
     for (const std::string& reader : connection.readers) {
       if (everywhere.contains(reader)) topic.read_by.assign(processes.size(), true);

@@ -32,26 +32,26 @@ StepExchange::StepExchange(Transport& transport, const std::vector<std::string>&
       instance_(draw_instance()),
       own_(static_cast<std::size_t>(std::ranges::find(names_, own) - names_.begin())),
       peers_(names_.size()) {
-  writer_ = transport.make_writer(kTopic, step_type(), step_qos());
-  reader_ = transport.make_reader(kTopic, step_type(), step_qos(), [this](MessagePtr message) {
-    receive(std::static_pointer_cast<const Step>(message));
-  });
+  writer_ = transport.make_writer(kTopic, msgs::message_type<Step>(), step_qos());
+  reader_ = transport.make_reader(
+      kTopic, msgs::message_type<Step>(), step_qos(),
+      [this](MessagePtr message) { receive(std::static_pointer_cast<const Step>(message)); });
 }
 
 void StepExchange::receive(const std::shared_ptr<const Step>& step) {
   const auto index =
-      static_cast<std::size_t>(std::ranges::find(names_, step->process) - names_.begin());
-  const std::string name = "process '" + step->process + "'";
+      static_cast<std::size_t>(std::ranges::find(names_, step->process()) - names_.begin());
+  const std::string name = "process '" + step->process() + "'";
   const MutexLock lock(mutex_);
-  if (index == names_.size() || step->run != run_) {
+  if (index == names_.size() || step->run() != run_) {
     fail(name + " runs another graph, deployment, seed or parameters");
-  } else if (Peer& peer = peers_[index]; step->aborted) {
+  } else if (Peer& peer = peers_[index]; step->aborted()) {
     // A message that an earlier instance of the process left behind does not count.
-    if (peer.instance == step->instance) fail(name + " left: " + step->reason);
-  } else if (peer.instance.value_or(step->instance) != step->instance) {
+    if (peer.instance == step->instance()) fail(name + " left: " + step->reason());
+  } else if (peer.instance.value_or(step->instance()) != step->instance()) {
     fail(name + " started again; a run in lock-step cannot continue without its old state");
   } else {
-    peer.instance = step->instance;
+    peer.instance = step->instance();
     peer.waiting.push_back(step);
   }
   arrived_.notify_all();
@@ -66,7 +66,7 @@ Result<StepExchange::Steps> StepExchange::exchange(std::uint64_t number,
                                                    std::shared_ptr<Step> mine) {
   Steps steps(size());
   if (mine != nullptr) {
-    mine->number = number;
+    mine->number(number);
     send(mine);
     steps[own_] = std::move(mine);
   }
@@ -78,9 +78,9 @@ Result<StepExchange::Steps> StepExchange::exchange(std::uint64_t number,
     if (i == own_ || !active[i]) continue;
     steps[i] = std::move(peers_[i].waiting.front());
     peers_[i].waiting.pop_front();
-    if (steps[i]->number != number) {
+    if (steps[i]->number() != number) {
       return Error{ErrorCode::kUnavailable, title(i) + " is in step " +
-                                                std::to_string(steps[i]->number) + ", not " +
+                                                std::to_string(steps[i]->number()) + ", not " +
                                                 std::to_string(number)};
     }
   }
@@ -126,15 +126,15 @@ void StepExchange::abort(const std::string& reason) {
   }
   arrived_.notify_all();
   auto step = std::make_shared<Step>();
-  step->aborted = true;
-  step->reason = reason;
+  step->aborted(true);
+  step->reason(reason);
   send(std::move(step));
 }
 
 void StepExchange::send(std::shared_ptr<Step> step) {
-  step->run = run_;
-  step->instance = instance_;
-  step->process = names_[own_];
+  step->run(run_);
+  step->instance(instance_);
+  step->process(names_[own_]);
   writer_->write(std::move(step));
 }
 

@@ -11,9 +11,13 @@
 #include "furrow_core/mutex.hpp"
 #include "furrow_core/result.hpp"
 #include "furrow_graph/transport.hpp"
-#include "step.hpp"
+#include "furrow_msgs/furrow_graph.h"
+#include "furrow_msgs/message_types.hpp"
 
 namespace furrow::graph {
+
+using furrow_graph::msg::Step;
+using furrow_graph::msg::StepMessage;
 
 /// Exchanges the simulation steps of a lock-step among the processes of a deployment. Every process
 /// reads the steps of all others, and all know beforehand which processes take part in a step.

@@ -4,11 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <future>
-#include <map>
 #include <thread>
 
+#include "fake_transport.hpp"
 #include "fixtures.hpp"
-#include "furrow_core/mutex.hpp"
 #include "furrow_graph/runtime.hpp"
 
 namespace furrow::graph {
@@ -18,64 +17,6 @@ using furrow_msgs::msg::Plan;
 using furrow_msgs::msg::Tracks;
 using test::spec;
 constexpr std::chrono::seconds kPatience{5};
-
-/// The test itself is the receive thread. Every topic has an external subscriber.
-class ManualTransport final : public Transport {
- public:
-  std::unique_ptr<TransportWriter> make_writer(const std::string& topic, const msgs::MessageType&,
-                                               const msgs::Qos&) override {
-    return std::make_unique<Writer>(*this, topic);
-  }
-  std::unique_ptr<TransportReader> make_reader(
-      const std::string& topic, const msgs::MessageType&, const msgs::Qos&,
-      std::function<void(MessagePtr)> on_message) override {
-    receivers_[topic] = std::move(on_message);
-    return std::make_unique<Reader>();
-  }
-  void deliver_plan(std::uint64_t revision) {
-    auto plan = std::make_shared<Plan>();
-    plan->revision(revision);
-    receivers_.at("planner/plan")(std::move(plan));
-  }
-  void deliver_tracks() { receivers_.at("tracker/tracks")(std::make_shared<Tracks>()); }
-
-  [[nodiscard]] std::size_t written(const std::string& topic) {
-    const MutexLock lock(mutex_);
-    return written_[topic];
-  }
-  [[nodiscard]] bool wait_written(const std::string& topic, std::size_t count) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    const MutexLock lock(mutex_);
-    while (written_[topic] < count) {
-      if (!changed_.wait_until(mutex_, deadline)) return false;
-    }
-    return true;
-  }
-
- private:
-  struct Writer final : TransportWriter {
-    Writer(ManualTransport& transport, std::string name)
-        : owner(transport), topic(std::move(name)) {}
-    [[nodiscard]] bool has_readers() const override { return true; }
-    void write(MessagePtr) override {
-      const MutexLock lock(owner.mutex_);
-      ++owner.written_[topic];
-      owner.changed_.notify_all();
-    }
-    [[nodiscard]] TransportCounters counters() const override { return {}; }
-    ManualTransport& owner;
-    const std::string topic;
-  };
-  struct Reader final : TransportReader {
-    [[nodiscard]] TransportCounters counters() const override { return {}; }
-    [[nodiscard]] int writers() const override { return 0; }
-  };
-
-  std::map<std::string, std::function<void(MessagePtr)>> receivers_;
-  Mutex mutex_;
-  ConditionVariable changed_;
-  std::map<std::string, std::size_t> written_ FURROW_GUARDED_BY(mutex_);
-};
 
 /// A process with a sink and a relay, whose plans and tracks come from outside.
 class ReceivingTest : public testing::Test {
@@ -97,8 +38,13 @@ class ReceivingTest : public testing::Test {
                                                         .transport = &transport_});
     ended_ = std::async(std::launch::async, [this] { runtime_->run(); });
   }
+  void deliver_plan(std::uint64_t revision) {
+    auto plan = std::make_shared<Plan>();
+    plan->revision(revision);
+    transport_.receivers.at("planner/plan")(std::move(plan));
+  }
   void deliver_and_wait(std::uint64_t revision) {
-    transport_.deliver_plan(revision);
+    deliver_plan(revision);
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (calls_ < revision && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::yield();
@@ -110,7 +56,7 @@ class ReceivingTest : public testing::Test {
     ended_.wait();
   }
 
-  ManualTransport transport_;
+  test::FakeTransport transport_;
   Registry registry_ = test::standard_registry();
   std::atomic<std::uint64_t> calls_ = 0;
   std::unique_ptr<Runtime> runtime_;
@@ -136,8 +82,8 @@ TEST_F(ReceivingTest, ALongCallbackAfterManyShortOnesDoesNotHoldUpTheReceiveThre
     released = released_later.wait_for(kPatience) == std::future_status::ready;
   });
   for (std::uint64_t i = 1; i <= kShortCalls; ++i) deliver_and_wait(i);
-  transport_.deliver_plan(kShortCalls + 1);
-  transport_.deliver_tracks();
+  deliver_plan(kShortCalls + 1);
+  transport_.receivers.at("tracker/tracks")(std::make_shared<Tracks>());
   EXPECT_TRUE(transport_.wait_written("relayed", 1)) << "the other component was not called";
   EXPECT_EQ(calls_, kShortCalls) << "the long callback returned before it was released";
   release.set_value();
@@ -155,7 +101,7 @@ TEST_F(ReceivingTest, TheRunEndsAfterTheLastCallback) {
     release.get_future().wait();
     returned = true;
   });
-  transport_.deliver_plan(1);
+  deliver_plan(1);
   begun.get_future().wait();
   runtime_->request_stop("enough");
   release.set_value();
@@ -164,7 +110,7 @@ TEST_F(ReceivingTest, TheRunEndsAfterTheLastCallback) {
 }
 
 TEST(Sending, EveryTopicOfACallbackReachesTheTransportAtItsPublication) {
-  ManualTransport transport;
+  test::FakeTransport transport;
   Registry registry;
   std::size_t plans = 0;
   std::size_t tracks = 0;
@@ -175,9 +121,9 @@ TEST(Sending, EveryTopicOfACallbackReachesTheTransportAtItsPublication) {
     auto track = context.output<msgs::topics::Tracks>();
     context.every(Duration::milliseconds(1), [&, plan, track](Time) {
       plan.publish(Plan());
-      plans = transport.written("planner/plan");
+      plans = transport.written("planner/plan").size();
       track.publish(Tracks());
-      tracks = transport.written("tracker/tracks");
+      tracks = transport.written("tracker/tracks").size();
       context.request_stop("enough");
     });
     return std::make_unique<Component>();
@@ -193,7 +139,7 @@ TEST(Sending, EveryTopicOfACallbackReachesTheTransportAtItsPublication) {
 TEST(Sending, ABusyReaderInTheProcessHoldsNoMessageBack) {
   constexpr std::uint64_t kPlans = 30;
   for (const int threads : {1, 2, 4}) {
-    ManualTransport transport;
+    test::FakeTransport transport;
     Registry registry = test::standard_registry();
     bool all_left = true;
     test::add_sink(registry, [&](Context& context, const Plan& plan) {

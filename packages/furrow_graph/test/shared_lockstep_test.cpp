@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <future>
 #include <thread>
 
-#include "../src/step.hpp"
 #include "fixtures.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "memory_network.hpp"
@@ -55,60 +55,57 @@ GraphSpec cyclic_graph() {
   return graph;
 }
 
-struct Outcome {
-  std::string transcript;
-  RunResult result;
-};
+using Take = std::function<void(Context&, const Plan&)>;
 
-Outcome run_process(const GraphSpec& graph, const std::vector<PlacedProcess>& processes,
-                    const PlacedProcess& mine, Transport* transport, int threads,
-                    std::uint64_t seed = 1) {
-  Registry registry = test::standard_registry();
+/// The runtime of one process, whose sink calls `take`.
+std::unique_ptr<Runtime> make_runtime(Registry& registry,
+                                      const std::vector<PlacedProcess>& processes, std::size_t own,
+                                      Transport* transport, Take take, int threads = 1,
+                                      std::uint64_t seed = 1) {
+  registry = test::standard_registry();
   registry.add<Echo>("echo");
-  Outcome outcome;
-  int plans = 0;
-  test::add_sink(registry, [&](Context& context, const Plan& plan) {
-    outcome.transcript += std::to_string(context.now().count_ns()) + " " +
-                          plan.header().frame_id() + " " + std::to_string(plan.revision()) + "\n";
-    if (++plans == 200) context.request_stop("enough");
-  });
-  Runtime runtime(graph, registry,
-                  {.clock = ClockMode::kLockstep,
-                   .threads = threads,
-                   .seed = seed,
-                   .components = mine.components,
-                   .transport = transport,
-                   .process = mine.name,
-                   .processes = processes});
-  outcome.result = runtime.run();
-  return outcome;
+  test::add_sink(registry, std::move(take));
+  return std::make_unique<Runtime>(cyclic_graph(), registry,
+                                   RuntimeOptions{.clock = ClockMode::kLockstep,
+                                                  .threads = threads,
+                                                  .seed = seed,
+                                                  .components = processes[own].components,
+                                                  .transport = transport,
+                                                  .process = processes[own].name,
+                                                  .processes = processes});
 }
 
-/// Runs every process and returns their transcripts together.
+/// Runs every process and returns the transcript of the sink.
 std::string transcript(const std::vector<std::vector<std::string>>& components,
                        std::uint64_t network_seed, int threads) {
-  const GraphSpec graph = cyclic_graph();
   std::vector<PlacedProcess> processes;
   for (std::size_t i = 0; i < components.size(); ++i) {
     processes.push_back({.name = "p" + std::to_string(i), .components = components[i]});
   }
+  std::string text;
+  int plans = 0;
+  const auto take = [&](Context& context, const Plan& plan) {
+    text += std::to_string(context.now().count_ns()) + " " + plan.header().frame_id() + " " +
+            std::to_string(plan.revision()) + "\n";
+    if (++plans == 200) context.request_stop("enough");
+  };
   test::MemoryNetwork network(network_seed);
-  std::vector<std::unique_ptr<Transport>> ends;
-  std::vector<std::future<Outcome>> running;
+  std::deque<test::MemoryNetwork::Endpoint> endpoints;
+  std::deque<Registry> registries;
+  std::vector<std::future<RunResult>> running;
   for (std::size_t i = 0; i < processes.size(); ++i) {
-    ends.push_back(std::make_unique<test::MemoryNetwork::Endpoint>(network, static_cast<int>(i)));
-    running.push_back(std::async(std::launch::async, [&, i, end = ends.back().get()] {
-      return run_process(graph, processes, processes[i], end, threads);
-    }));
+    running.push_back(std::async(
+        std::launch::async, [&, i, &endpoint = endpoints.emplace_back(network, static_cast<int>(i)),
+                             &registry = registries.emplace_back()] {
+          return make_runtime(registry, processes, i, &endpoint, take, threads)->run();
+        }));
   }
-  std::string all;
   for (auto& process : running) {
-    const Outcome outcome = process.get();
-    EXPECT_EQ(outcome.result.reason, "enough");
-    EXPECT_FALSE(outcome.result.failed);
-    all += outcome.transcript;
+    const RunResult result = process.get();
+    EXPECT_EQ(result.reason, "enough");
+    EXPECT_FALSE(result.failed);
   }
-  return all;
+  return text;
 }
 
 TEST(SharedLockstep, GivesOneTranscriptForEveryPlacement) {
@@ -130,142 +127,64 @@ TEST(SharedLockstep, GivesOneTranscriptForEveryPlacement) {
   }
 }
 
-std::vector<PlacedProcess> two_processes() {
-  return {{.name = "one", .components = {"s0", "s1", "s2", "e0", "r"}},
-          {.name = "two", .components = {"e1", "sink"}}};
-}
+/// Two processes; the second one has the sink.
+class TwoProcesses : public testing::Test {
+ protected:
+  void make(const Take& take, std::uint64_t second_seed = 1) {
+    first_ = make_runtime(registries_[0], processes_, 0, &endpoints_[0], {});
+    second_ = make_runtime(registries_[1], processes_, 1, &endpoints_[1], take, 1, second_seed);
+  }
+  void run() {
+    auto other = std::async(std::launch::async, [this] { return second_->run(); });
+    first_result_ = first_->run();
+    second_result_ = other.get();
+  }
 
-TEST(SharedLockstep, BothProcessesReportADifferentSeed) {
-  test::MemoryNetwork network(1);
-  test::MemoryNetwork::Endpoint first(network, 0);
-  test::MemoryNetwork::Endpoint second(network, 1);
-  const GraphSpec graph = cyclic_graph();
-  const auto processes = two_processes();
-  auto other = std::async(std::launch::async, [&] {
-    return run_process(graph, processes, processes[1], &second, 1, 2);
-  });
-  const Outcome mine = run_process(graph, processes, processes[0], &first, 1, 1);
-  EXPECT_TRUE(mine.result.failed);
-  EXPECT_EQ(mine.result.reason, "process 'two' runs another graph, deployment, seed or parameters");
-  EXPECT_EQ(other.get().result.reason,
+  const std::vector<PlacedProcess> processes_ = {
+      {.name = "one", .components = {"s0", "s1", "s2", "e0", "r"}},
+      {.name = "two", .components = {"e1", "sink"}}};
+  test::MemoryNetwork network_{1};
+  std::array<test::MemoryNetwork::Endpoint, 2> endpoints_{
+      test::MemoryNetwork::Endpoint(network_, 0), test::MemoryNetwork::Endpoint(network_, 1)};
+  std::array<Registry, 2> registries_;
+  std::unique_ptr<Runtime> first_;
+  std::unique_ptr<Runtime> second_;
+  RunResult first_result_;
+  RunResult second_result_;
+};
+
+TEST_F(TwoProcesses, ReportADifferentSeed) {
+  make([](Context&, const Plan&) {}, 2);
+  run();
+  EXPECT_TRUE(first_result_.failed);
+  EXPECT_EQ(first_result_.reason,
+            "process 'two' runs another graph, deployment, seed or parameters");
+  EXPECT_EQ(second_result_.reason,
             "process 'one' runs another graph, deployment, seed or parameters");
 }
 
-TEST(SharedLockstep, AnInterruptionEndsAllProcesses) {
-  test::MemoryNetwork network(1);
-  test::MemoryNetwork::Endpoint first(network, 0);
-  test::MemoryNetwork::Endpoint second(network, 1);
-  const GraphSpec graph = cyclic_graph();
-  const auto processes = two_processes();
-  Registry registry = test::standard_registry();
-  registry.add<Echo>("echo");
+TEST_F(TwoProcesses, EndWhenOneIsInterrupted) {
   std::promise<void> started;
-  bool once = false;
-  test::add_sink(registry, [&](Context&, const Plan&) {
+  make([&, once = false](Context&, const Plan&) mutable {
     if (!std::exchange(once, true)) started.set_value();
   });
-  auto other = std::async(std::launch::async, [&] {
-    Registry others = test::standard_registry();
-    others.add<Echo>("echo");
-    test::add_sink(others, [](Context&, const Plan&) {});
-    Runtime runtime(graph, others,
-                    {.clock = ClockMode::kLockstep,
-                     .components = processes[0].components,
-                     .transport = &first,
-                     .process = "one",
-                     .processes = processes});
-    return runtime.run();
-  });
-  Runtime runtime(graph, registry,
-                  {.clock = ClockMode::kLockstep,
-                   .components = processes[1].components,
-                   .transport = &second,
-                   .process = "two",
-                   .processes = processes});
   std::thread signal([&] {
     started.get_future().wait();
-    runtime.request_stop("interrupted");
+    second_->request_stop("interrupted");
   });
-  EXPECT_EQ(runtime.run().reason, "interrupted");
-  const RunResult result = other.get();
-  EXPECT_EQ(result.reason, "process 'two' left: interrupted");
-  EXPECT_TRUE(result.failed);
+  run();
   signal.join();
+  EXPECT_EQ(second_result_.reason, "interrupted");
+  EXPECT_EQ(first_result_.reason, "process 'two' left: interrupted");
+  EXPECT_TRUE(first_result_.failed);
 }
 
-TEST(SharedLockstep, AFailureInOneProcessEndsAll) {
-  test::MemoryNetwork network(1);
-  test::MemoryNetwork::Endpoint first(network, 0);
-  test::MemoryNetwork::Endpoint second(network, 1);
-  const GraphSpec graph = cyclic_graph();
-  const auto processes = two_processes();
-  auto other = std::async(std::launch::async, [&] {
-    Registry registry = test::standard_registry();
-    registry.add<Echo>("echo");
-    test::add_sink(registry, [](Context&, const Plan&) { throw std::runtime_error("broken"); });
-    Runtime runtime(graph, registry,
-                    {.clock = ClockMode::kLockstep,
-                     .components = processes[1].components,
-                     .transport = &second,
-                     .process = "two",
-                     .processes = processes});
-    return runtime.run();
-  });
-  const Outcome mine = run_process(graph, processes, processes[0], &first, 1);
-  EXPECT_TRUE(mine.result.failed);
-  EXPECT_EQ(mine.result.reason, "component 'sink' failed: broken");
-  EXPECT_EQ(other.get().reason, mine.result.reason);
-}
-
-Step sample_step() {
-  Step step{.number = 5,
-            .run = 6,
-            .instance = 7,
-            .next_timer_ns = -8,
-            .process = "p",
-            .stop = true,
-            .failed = true,
-            .reason = "why",
-            .topics = {1, 4}};
-  step.messages = {{1, 2, {std::byte{3}}}, {4, 5, {}}};
-  return step;
-}
-
-TEST(Step, RoundTripsThroughCdr) {
-  const Step step = sample_step();
-  std::vector<std::byte> bytes(step_type().serialized_size(&step));
-  ASSERT_TRUE(step_type().serialize(&step, bytes).ok());
-  Step copy;
-  ASSERT_TRUE(step_type().deserialize(bytes, &copy).ok());
-  EXPECT_EQ(copy.number, 5u);
-  EXPECT_EQ(copy.run, 6u);
-  EXPECT_EQ(copy.instance, 7u);
-  EXPECT_EQ(copy.next_timer_ns, -8);
-  EXPECT_EQ(copy.process, "p");
-  EXPECT_TRUE(copy.stop && copy.failed);
-  EXPECT_FALSE(copy.aborted);
-  EXPECT_EQ(copy.reason, "why");
-  EXPECT_EQ(copy.topics, step.topics);
-  ASSERT_EQ(copy.messages.size(), 2u);
-  EXPECT_EQ(copy.messages[0].cdr, step.messages[0].cdr);
-  EXPECT_EQ(copy.messages[1].component, 5u);
-}
-
-TEST(Step, TruncatedOrOversizedDataIsAnError) {
-  const Step step = sample_step();
-  std::vector<std::byte> bytes(step_type().serialized_size(&step));
-  ASSERT_TRUE(step_type().serialize(&step, bytes).ok());
-  for (std::size_t size = 0; size < bytes.size(); ++size) {
-    Step copy;
-    EXPECT_FALSE(step_type().deserialize(std::span(bytes).first(size), &copy).ok()) << size;
-  }
-  // A length greater than any buffer.
-  std::vector<std::byte> huge = bytes;
-  std::ranges::fill(huge.begin() + 4, huge.end(), std::byte{0x7F});
-  Step copy;
-  EXPECT_FALSE(step_type().deserialize(huge, &copy).ok());
-  std::vector<std::byte> small(bytes.size() - 1);
-  EXPECT_FALSE(step_type().serialize(&step, small).ok());
+TEST_F(TwoProcesses, FailTogether) {
+  make([](Context&, const Plan&) { throw std::runtime_error("broken"); });
+  run();
+  EXPECT_TRUE(first_result_.failed);
+  EXPECT_EQ(first_result_.reason, "component 'sink' failed: broken");
+  EXPECT_EQ(second_result_.reason, first_result_.reason);
 }
 
 }  // namespace
