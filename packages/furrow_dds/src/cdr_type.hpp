@@ -13,14 +13,15 @@
 
 namespace furrow::dds {
 
-/// The object behind the void pointers that Fast DDS passes to a CdrType.
+/// The object behind the void pointers that Fast DDS passes to a CdrType. The base class is a
+/// sample that is ignored.
 class CdrSample {
  public:
   virtual ~CdrSample() = default;
-  [[nodiscard]] virtual std::size_t size() const = 0;
+  [[nodiscard]] virtual std::size_t size() const { return 0; }
   /// Bytes written; 0 if it failed.
-  [[nodiscard]] virtual std::size_t serialize(std::span<std::byte> out) const = 0;
-  virtual void deserialize(std::span<const std::byte> in) = 0;
+  [[nodiscard]] virtual std::size_t serialize(std::span<std::byte>) const { return 0; }
+  virtual void deserialize(std::span<const std::byte>) {}
 };
 
 class OutgoingMessage final : public CdrSample {
@@ -29,7 +30,6 @@ class OutgoingMessage final : public CdrSample {
       : type_(type), message_(message), size_(size) {}
   [[nodiscard]] std::size_t size() const override { return size_; }
   [[nodiscard]] std::size_t serialize(std::span<std::byte> out) const override;
-  void deserialize(std::span<const std::byte>) override {}
 
  private:
   const msgs::MessageType& type_;
@@ -45,7 +45,6 @@ class IncomingMessage final : public CdrSample {
   /// Null if there is no message, or it was malformed.
   [[nodiscard]] graph::MessagePtr take() { return std::exchange(message_, nullptr); }
   [[nodiscard]] std::size_t size() const override { return size_; }
-  [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
   void deserialize(std::span<const std::byte> in) override;
 
  private:
@@ -69,7 +68,6 @@ class OutgoingBytes final : public CdrSample {
   explicit OutgoingBytes(std::span<const std::byte> bytes) : bytes_(bytes) {}
   [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
   [[nodiscard]] std::size_t serialize(std::span<std::byte> out) const override;
-  void deserialize(std::span<const std::byte>) override {}
 
  private:
   std::span<const std::byte> bytes_;
@@ -79,19 +77,10 @@ class IncomingBytes final : public CdrSample {
  public:
   [[nodiscard]] std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
   [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
-  [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
   void deserialize(std::span<const std::byte> in) override { bytes_.assign(in.begin(), in.end()); }
 
  private:
   std::vector<std::byte> bytes_;
-};
-
-/// A sample that is ignored.
-class NoData final : public CdrSample {
- public:
-  [[nodiscard]] std::size_t size() const override { return 0; }
-  [[nodiscard]] std::size_t serialize(std::span<std::byte>) const override { return 0; }
-  void deserialize(std::span<const std::byte>) override {}
 };
 
 /// A type that Fast DDS knows by its name only; samples are CdrSample. Typed and raw endpoints of a
@@ -103,7 +92,7 @@ class CdrType final : public eprosima::fastdds::dds::TopicDataType {
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
   std::function<uint32_t()> getSerializedSizeProvider(void* data) override;
-  void* createData() override { return static_cast<CdrSample*>(new NoData); }
+  void* createData() override { return new CdrSample; }
   void deleteData(void* data) override { delete static_cast<CdrSample*>(data); }
   bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
   bool is_bounded() const override { return false; }

@@ -51,19 +51,6 @@ class RawHandler final : public SampleHandler {
   std::function<void(RawMessage)> on_message_;
 };
 
-class TypedWriter final : public graph::TransportWriter {
- public:
-  TypedWriter(Participant& participant, const std::string& topic, const msgs::MessageType& type,
-              const msgs::Qos& qos)
-      : writer_(participant, topic, std::string(type.dds_name), &type, qos) {}
-  [[nodiscard]] bool has_readers() const override { return writer_.has_readers(); }
-  void write(graph::MessagePtr message) override { writer_.write(std::move(message)); }
-  [[nodiscard]] graph::TransportCounters counters() const override { return writer_.counters(); }
-
- private:
-  Writer writer_;
-};
-
 class BytesWriter final : public RawWriter {
  public:
   BytesWriter(Participant& participant, const std::string& topic, const std::string& type_name,
@@ -80,78 +67,54 @@ class BytesWriter final : public RawWriter {
   Writer writer_;
 };
 
-template <class Interface>
-class ReaderOf final : public Interface {
- public:
-  ReaderOf(Participant& participant, const std::string& topic, const std::string& type_name,
-           const msgs::Qos& qos, std::unique_ptr<SampleHandler> handler)
-      : reader_(participant, topic, type_name, qos, std::move(handler)) {}
-  [[nodiscard]] graph::TransportCounters counters() const override { return reader_.counters(); }
-  [[nodiscard]] int writers() const override { return reader_.writers(); }
-
- private:
-  Reader reader_;
-};
-
 }  // namespace
 
-class DdsTransport::Impl {
- public:
-  explicit Impl(const DdsParameters& parameters) : participant(parameters) {}
-  Participant participant;
-};
-
 DdsTransport::DdsTransport(const DdsParameters& parameters)
-    : impl_(std::make_unique<Impl>(parameters)) {}
+    : participant_(std::make_unique<Participant>(parameters)) {}
 
 DdsTransport::~DdsTransport() = default;
 
 std::unique_ptr<graph::TransportWriter> DdsTransport::make_writer(const std::string& topic,
                                                                   const msgs::MessageType& type,
                                                                   const msgs::Qos& qos) {
-  return std::make_unique<TypedWriter>(impl_->participant, topic, type, qos);
+  return std::make_unique<Writer>(*participant_, topic, std::string(type.dds_name), &type, qos);
 }
 
 std::unique_ptr<graph::TransportReader> DdsTransport::make_reader(
     const std::string& topic, const msgs::MessageType& type, const msgs::Qos& qos,
     std::function<void(graph::MessagePtr)> on_message) {
-  return std::make_unique<ReaderOf<graph::TransportReader>>(
-      impl_->participant, topic, std::string(type.dds_name), qos,
-      std::make_unique<TypedHandler>(type, std::move(on_message)));
+  return std::make_unique<Reader>(*participant_, topic, std::string(type.dds_name), qos,
+                                  std::make_unique<TypedHandler>(type, std::move(on_message)));
 }
 
 std::unique_ptr<RawWriter> DdsTransport::make_raw_writer(const std::string& topic,
                                                          const std::string& type_name,
                                                          const msgs::Qos& qos) {
-  return std::make_unique<BytesWriter>(impl_->participant, topic, type_name, qos);
+  return std::make_unique<BytesWriter>(*participant_, topic, type_name, qos);
 }
 
 std::unique_ptr<RawReader> DdsTransport::make_raw_reader(
     const std::string& topic, const std::string& type_name, const msgs::Qos& qos,
     std::function<void(RawMessage)> on_message) {
-  return std::make_unique<ReaderOf<RawReader>>(impl_->participant, topic, type_name, qos,
-                                               std::make_unique<RawHandler>(std::move(on_message)));
+  return std::make_unique<Reader>(*participant_, topic, type_name, qos,
+                                  std::make_unique<RawHandler>(std::move(on_message)));
 }
 
 DiscoverySnapshot DdsTransport::discovery() const {
-  return impl_->participant.discovery().snapshot();
+  return participant_->discovery().snapshot();
 }
 
 std::uint64_t DdsTransport::discovery_version() const {
-  return impl_->participant.discovery().version();
-}
-
-void DdsTransport::on_fault(std::function<void(const TransportFault&)> callback) {
-  impl_->participant.set_on_fault(std::move(callback));
+  return participant_->discovery().version();
 }
 
 std::vector<EndpointStatus> DdsTransport::status() const {
-  return impl_->participant.status();
+  return participant_->status();
 }
 
 bool DdsTransport::flush(Duration timeout) {
-  return impl_->participant.flush(std::chrono::steady_clock::now() +
-                                  std::chrono::nanoseconds(timeout.count_ns()));
+  return participant_->flush(std::chrono::steady_clock::now() +
+                             std::chrono::nanoseconds(timeout.count_ns()));
 }
 
 }  // namespace furrow::dds

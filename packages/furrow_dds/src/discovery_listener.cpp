@@ -5,7 +5,6 @@
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include "endpoint_qos.hpp"
@@ -91,10 +90,7 @@ void DiscoveryListener::on_participant_discovery(fdds::DomainParticipant*,
     process.guid = guid;
     process.name = info.info.m_participantName.to_string();
     const auto& bytes = info.info.m_userData.data_vec();
-    const std::string user_data(bytes.begin(), bytes.end());
-    process.host = user_data_value(user_data, "host");
-    const std::string pid = user_data_value(user_data, "pid");
-    std::from_chars(pid.data(), pid.data() + pid.size(), process.pid);
+    read_user_data({bytes.begin(), bytes.end()}, process);
   } else {
     processes_.erase(guid);
     std::erase_if(endpoints_, [&](const auto& entry) { return same_process(entry.first, guid); });

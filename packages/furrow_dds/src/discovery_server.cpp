@@ -2,24 +2,17 @@
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 
+#include "participant.hpp"
 #include "participant_qos.hpp"
 
 namespace furrow::dds {
 
 namespace fdds = eprosima::fastdds::dds;
 
-class DiscoveryServer::Impl {
- public:
-  explicit Impl(fdds::DomainParticipant* participant) : participant_(participant) {}
-  ~Impl() { fdds::DomainParticipantFactory::get_instance()->delete_participant(participant_); }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
- private:
-  fdds::DomainParticipant* participant_;
+struct DiscoveryServer::Impl {
+  ParticipantHandle participant;
 };
 
 DiscoveryServer::DiscoveryServer(std::int64_t domain_id, const std::string& address,
@@ -42,13 +35,13 @@ DiscoveryServer::DiscoveryServer(std::int64_t domain_id, const std::string& addr
   builtin.discovery_config.discoveryProtocol =
       eprosima::fastrtps::rtps::DiscoveryProtocol_t::SERVER;
   builtin.metatrafficUnicastLocatorList.push_back(locator);
-  auto* participant = fdds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<fdds::DomainId_t>(domain_id), qos, nullptr, fdds::StatusMask::none());
+  ParticipantHandle participant(fdds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<fdds::DomainId_t>(domain_id), qos, nullptr, fdds::StatusMask::none()));
   if (participant == nullptr) {
     throw ConfigError("discovery server: refused at " + address +
                       ": not an address of this host, or another server is there");
   }
-  impl_ = std::make_unique<Impl>(participant);
+  impl_.reset(new Impl{std::move(participant)});
 }
 
 DiscoveryServer::~DiscoveryServer() = default;

@@ -1,7 +1,6 @@
 #include "participant.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
@@ -29,6 +28,23 @@ void log_to_stderr() {
   });
 }
 
+ParticipantHandle create_participant(const DdsParameters& parameters, DiscoveryListener& listener) {
+  const fdds::DomainParticipantQos qos = participant_qos(parameters);
+  log_to_stderr();
+  remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
+  if (std::ranges::find(parameters.transports, "udp") != parameters.transports.end()) {
+    wait_for_interfaces(parameters.interfaces, std::chrono::seconds(5));
+  }
+  ParticipantHandle participant(fdds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &listener,
+      fdds::StatusMask::none()));
+  if (participant == nullptr) {
+    throw ConfigError("DDS participant refused in domain " + std::to_string(parameters.domain_id) +
+                      ": is there an interface with the given address, and memory in /dev/shm?");
+  }
+  return participant;
+}
+
 }  // namespace
 
 void IncompatibilityLog::add(const std::string& detail) {
@@ -43,33 +59,15 @@ void IncompatibilityLog::add_to(EndpointStatus& status) const {
   status.incompatibility = last_;
 }
 
-void Participant::Deleter::operator()(fdds::DomainParticipant* participant) const {
+void ParticipantDeleter::operator()(fdds::DomainParticipant* participant) const {
   participant->set_listener(nullptr);
   participant->delete_contained_entities();
   fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-Participant::Handle Participant::create(const DdsParameters& parameters,
-                                        DiscoveryListener& listener) {
-  const fdds::DomainParticipantQos qos = participant_qos(parameters);
-  log_to_stderr();
-  remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
-  if (std::ranges::find(parameters.transports, "udp") != parameters.transports.end()) {
-    wait_for_interfaces(parameters.interfaces, std::chrono::seconds(5));
-  }
-  Handle participant(fdds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<fdds::DomainId_t>(parameters.domain_id), qos, &listener,
-      fdds::StatusMask::none()));
-  if (participant == nullptr) {
-    throw ConfigError("DDS participant refused in domain " + std::to_string(parameters.domain_id) +
-                      ": is there an interface with the given address, and memory in /dev/shm?");
-  }
-  return participant;
-}
-
 Participant::Participant(const DdsParameters& parameters)
     : parameters_(parameters),
-      participant_(create(parameters_, discovery_)),
+      participant_(create_participant(parameters_, discovery_)),
       publisher_(participant_->create_publisher(fdds::PUBLISHER_QOS_DEFAULT)),
       subscriber_(participant_->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT)),
       sender_(static_cast<std::size_t>(parameters.bulk_threshold_kb * 1000)),
@@ -81,10 +79,7 @@ Participant::Participant(const DdsParameters& parameters)
   ProcessInfo own;
   own.guid = to_guid(participant_->guid());
   own.name = parameters.process_name;
-  const std::string user_data = process_user_data();
-  own.host = user_data_value(user_data, "host");
-  const std::string pid = user_data_value(user_data, "pid");
-  std::from_chars(pid.data(), pid.data() + pid.size(), own.pid);
+  read_user_data(process_user_data(), own);
   own.own = true;
   discovery_.set_own(own);
 }
@@ -124,18 +119,6 @@ Participant::TopicUse::~TopicUse() {
 bool Participant::is_own(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) const {
   return eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix ==
          participant_->guid().guidPrefix;
-}
-
-void Participant::set_on_fault(std::function<void(const TransportFault&)> callback) {
-  const MutexLock lock(fault_mutex_);
-  on_fault_ = std::move(callback);
-}
-
-void Participant::report(const TransportFault& fault) {
-  const MutexLock lock(fault_mutex_);
-  if (on_fault_) {
-    on_fault_(fault);
-  }
 }
 
 std::string Participant::incompatibility(const std::string& topic, bool own_is_writer,

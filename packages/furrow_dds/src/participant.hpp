@@ -5,7 +5,6 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -26,6 +25,12 @@ class Endpoint {
   /// False if a message is not delivered at `deadline`.
   [[nodiscard]] virtual bool flush(std::chrono::steady_clock::time_point deadline) = 0;
 };
+
+struct ParticipantDeleter {
+  void operator()(eprosima::fastdds::dds::DomainParticipant* participant) const;
+};
+using ParticipantHandle =
+    std::unique_ptr<eprosima::fastdds::dds::DomainParticipant, ParticipantDeleter>;
 
 /// Counts the endpoints that do not match one of ours because of their QoS. Thread-safe.
 class IncompatibilityLog {
@@ -71,9 +76,7 @@ class Participant {
   [[nodiscard]] const DiscoveryListener& discovery() const { return discovery_; }
   [[nodiscard]] const DdsParameters& parameters() const { return parameters_; }
 
-  void set_on_fault(std::function<void(const TransportFault&)> callback);
-  void report(const TransportFault& fault);
-  /// TransportFault::detail for an endpoint that DDS refused to match because of `policy`.
+  /// EndpointStatus::incompatibility for an endpoint that DDS did not match because of `policy`.
   [[nodiscard]] std::string incompatibility(const std::string& topic, bool own_is_writer,
                                             const msgs::Qos& own,
                                             eprosima::fastdds::dds::QosPolicyId_t policy) const;
@@ -87,26 +90,17 @@ class Participant {
   void linger(Endpoint& endpoint);
 
  private:
-  struct Deleter {
-    void operator()(eprosima::fastdds::dds::DomainParticipant* participant) const;
-  };
-  using Handle = std::unique_ptr<eprosima::fastdds::dds::DomainParticipant, Deleter>;
-  [[nodiscard]] static Handle create(const DdsParameters& parameters, DiscoveryListener& listener);
-
   // In this order: Fast DDS calls the listener as long as the participant exists, and the sender
   // writes to endpoints of the participant.
   const DdsParameters parameters_;
   DiscoveryListener discovery_;
-  Handle participant_;
+  ParticipantHandle participant_;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
   Sender sender_;
 
   Mutex topics_mutex_;
   std::map<std::string, int> topic_uses_ FURROW_GUARDED_BY(topics_mutex_);
-
-  Mutex fault_mutex_;
-  std::function<void(const TransportFault&)> on_fault_ FURROW_GUARDED_BY(fault_mutex_);
 
   mutable Mutex endpoints_mutex_;
   std::vector<Endpoint*> endpoints_ FURROW_GUARDED_BY(endpoints_mutex_);

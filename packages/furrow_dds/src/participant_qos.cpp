@@ -134,6 +134,20 @@ void set_discovery(const DdsParameters& parameters, fdds::DomainParticipantQos& 
   }
 }
 
+/// The value of `key`, or "".
+std::string user_data_value(const std::string& user_data, const std::string& key) {
+  const std::string prefix = key + "=";
+  std::size_t begin = 0;
+  while (begin < user_data.size()) {
+    const std::size_t end = std::min(user_data.find(';', begin), user_data.size());
+    if (user_data.compare(begin, prefix.size(), prefix) == 0) {
+      return user_data.substr(begin + prefix.size(), end - begin - prefix.size());
+    }
+    begin = end + 1;
+  }
+  return {};
+}
+
 }  // namespace
 
 rtps::Locator_t udp_locator(const std::string& address, std::uint32_t default_port) {
@@ -199,17 +213,10 @@ std::string process_user_data() {
   return "furrow=1;host=" + std::string(host.data()) + ";pid=" + std::to_string(getpid()) + ";";
 }
 
-std::string user_data_value(const std::string& user_data, const std::string& key) {
-  const std::string prefix = key + "=";
-  std::size_t begin = 0;
-  while (begin < user_data.size()) {
-    const std::size_t end = std::min(user_data.find(';', begin), user_data.size());
-    if (user_data.compare(begin, prefix.size(), prefix) == 0) {
-      return user_data.substr(begin + prefix.size(), end - begin - prefix.size());
-    }
-    begin = end + 1;
-  }
-  return {};
+void read_user_data(const std::string& user_data, ProcessInfo& process) {
+  process.host = user_data_value(user_data, "host");
+  const std::string pid = user_data_value(user_data, "pid");
+  std::from_chars(pid.data(), pid.data() + pid.size(), process.pid);
 }
 
 }  // namespace furrow::dds

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "furrow_dds/dds_parameters.hpp"
+#include "furrow_dds/discovery.hpp"
 
 namespace furrow::dds {
 
@@ -29,7 +30,7 @@ inline constexpr std::int64_t kMaxDiscoveryServers = 256;
 
 /// The user data of our participants, "key=value;": host and process id.
 [[nodiscard]] std::string process_user_data();
-/// The value of `key`, or "".
-[[nodiscard]] std::string user_data_value(const std::string& user_data, const std::string& key);
+/// Sets host and pid from the user data of a participant, where it has them.
+void read_user_data(const std::string& user_data, ProcessInfo& process);
 
 }  // namespace furrow::dds

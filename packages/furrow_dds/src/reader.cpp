@@ -56,11 +56,10 @@ void Reader::add_best_effort_reader() {
       best_effort_reader_ =
           create({.reliability = msgs::Reliability::kBestEffort, .depth = qos_.depth},
                  best_effort_listener_);
-      if (best_effort_reader_ != nullptr) return;
-      report_incompatible("DDS refused a best effort reader");
+      if (best_effort_reader_ == nullptr) incompatible_.add("DDS refused a best effort reader");
     });
   } catch (const std::system_error& error) {
-    report_incompatible(std::string("no thread to create a best effort reader: ") + error.what());
+    incompatible_.add(std::string("no thread to create a best effort reader: ") + error.what());
   }
 }
 
@@ -81,7 +80,7 @@ EndpointStatus Reader::status() const {
 }
 
 void Reader::take(fdds::DataReader& reader, bool best_effort_only) {
-  NoData nothing;
+  CdrSample nothing;
   fdds::SampleInfo info;
   // The writer is known before the sample is deserialized, which an ignored sample never is.
   while (reader.get_first_untaken_info(&info) == ReturnCode_t::RETCODE_OK) {
@@ -132,15 +131,6 @@ void Reader::update_matched(const Guid& writer, bool matched, bool best_effort_o
   best_effort_count_ = static_cast<int>(best_effort_writers_.size());
 }
 
-void Reader::report(TransportFaultKind kind, std::string detail) const {
-  participant_.report({kind, topic_, std::move(detail)});
-}
-
-void Reader::report_incompatible(const std::string& detail) {
-  incompatible_.add(detail);
-  report(TransportFaultKind::kIncompatible, detail);
-}
-
 void Reader::Listener::on_data_available(fdds::DataReader* reader) {
   const MutexLock lock(reader_.mutex_);
   if (!reader_.closed_) {
@@ -164,7 +154,6 @@ void Reader::Listener::on_requested_deadline_missed(
   // Without an external writer, messages come from the own process, which DDS does not see.
   if (!reader_.closed_ && status.total_count_change > 0 && reader_.writers_ > 0) {
     reader_.deadlines_missed_ += static_cast<std::uint64_t>(status.total_count_change);
-    reader_.report(TransportFaultKind::kDeadlineMissed);
   }
 }
 
@@ -178,9 +167,8 @@ void Reader::Listener::on_liveliness_changed(
   const Guid writer = to_guid(iHandle2GUID(status.last_publication_handle));
   if (status.not_alive_count_change > 0 && reader_.silent_.insert(writer).second) {
     ++reader_.liveliness_losses_;
-    reader_.report(TransportFaultKind::kLivelinessLost);
-  } else if (status.alive_count_change > 0 && reader_.silent_.erase(writer) > 0) {
-    reader_.report(TransportFaultKind::kLivelinessRegained);
+  } else if (status.alive_count_change > 0) {
+    reader_.silent_.erase(writer);
   }
 }
 
@@ -193,7 +181,7 @@ void Reader::Listener::on_requested_incompatible_qos(
   if (reader_.qos_.accept_best_effort && status.last_policy_id == fdds::RELIABILITY_QOS_POLICY_ID) {
     reader_.add_best_effort_reader();
   } else {
-    reader_.report_incompatible(reader_.participant_.incompatibility(
+    reader_.incompatible_.add(reader_.participant_.incompatibility(
         reader_.topic_, false, reader_.qos_, status.last_policy_id));
   }
 }

@@ -27,14 +27,14 @@ class SampleHandler {
 /// Reads one topic. With Qos::accept_best_effort it is one reliable DDS reader, joined by a best
 /// effort one when a writer that offers best effort is discovered. Each writer is read by one of
 /// the two, so that reliable writers stay reliable.
-class Reader final : public Endpoint {
+class Reader final : public graph::TransportReader, public Endpoint {
  public:
   Reader(Participant& participant, const std::string& topic, const std::string& type_name,
          const msgs::Qos& qos, std::unique_ptr<SampleHandler> handler);
   ~Reader() override;
 
-  [[nodiscard]] int writers() const { return writers_.load(std::memory_order_relaxed); }
-  [[nodiscard]] graph::TransportCounters counters() const;
+  [[nodiscard]] int writers() const override { return writers_.load(std::memory_order_relaxed); }
+  [[nodiscard]] graph::TransportCounters counters() const override;
   [[nodiscard]] EndpointStatus status() const override;
   [[nodiscard]] bool flush(std::chrono::steady_clock::time_point) override { return true; }
 
@@ -71,8 +71,6 @@ class Reader final : public Endpoint {
       FURROW_REQUIRES(mutex_);
   /// In another thread, because a listener must not create endpoints.
   void add_best_effort_reader() FURROW_REQUIRES(mutex_);
-  void report(TransportFaultKind kind, std::string detail = {}) const;
-  void report_incompatible(const std::string& detail);
 
   Participant& participant_;
   const std::string topic_;

@@ -40,7 +40,7 @@ Writer::~Writer() {
 
 void Writer::write(graph::MessagePtr message) {
   if (message == nullptr) {
-    count_dropped();
+    queue_->count_dropped();
   } else if (qos_.durability == msgs::Durability::kTransientLocal || has_readers()) {
     queue_->push(std::move(message));
   }
@@ -107,10 +107,8 @@ void Writer::Listener::on_offered_incompatible_qos(
     fdds::DataWriter*, const fdds::OfferedIncompatibleQosStatus& status) {
   const MutexLock lock(mutex_);
   if (!closed_ && status.total_count_change > 0) {
-    const std::string detail = writer_.participant_.incompatibility(
-        writer_.topic_, true, writer_.qos_, status.last_policy_id);
-    writer_.incompatible_.add(detail);
-    writer_.participant_.report({TransportFaultKind::kIncompatible, writer_.topic_, detail});
+    writer_.incompatible_.add(writer_.participant_.incompatibility(
+        writer_.topic_, true, writer_.qos_, status.last_policy_id));
   }
 }
 

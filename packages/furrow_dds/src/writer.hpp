@@ -11,17 +11,18 @@
 namespace furrow::dds {
 
 /// Writes messages of `type`; if that is null, std::vector<std::byte> in CDR form.
-class Writer final : public Endpoint, private MessageSink {
+class Writer final : public graph::TransportWriter, public Endpoint, private MessageSink {
  public:
   Writer(Participant& participant, const std::string& topic, const std::string& type_name,
          const msgs::MessageType* type, const msgs::Qos& qos);
   ~Writer() override;
 
-  [[nodiscard]] bool has_readers() const { return readers_.load(std::memory_order_relaxed) > 0; }
-  void write(graph::MessagePtr message);
+  [[nodiscard]] bool has_readers() const override {
+    return readers_.load(std::memory_order_relaxed) > 0;
+  }
+  void write(graph::MessagePtr message) override;
   [[nodiscard]] bool write_now(const std::vector<std::byte>& payload);
-  void count_dropped() { queue_->count_dropped(); }
-  [[nodiscard]] graph::TransportCounters counters() const { return queue_->counters(); }
+  [[nodiscard]] graph::TransportCounters counters() const override { return queue_->counters(); }
 
   [[nodiscard]] EndpointStatus status() const override;
   [[nodiscard]] bool flush(std::chrono::steady_clock::time_point deadline) override;

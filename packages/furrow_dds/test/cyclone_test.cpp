@@ -1,16 +1,11 @@
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-
+#include <cstdlib>
 #include <numeric>
 #include <optional>
 
 #include "furrow_msgs/nav_msgs.h"
 #include "furrow_msgs/topics.hpp"
+#include "peer_process.hpp"
 #include "test_support.hpp"
-
-extern char** environ;
 
 namespace furrow::dds {
 namespace {
@@ -18,47 +13,7 @@ namespace {
 using nav_msgs::msg::Odometry;
 namespace topics = msgs::topics;
 
-/// A process with another vendor's DDS, on loopback, without multicast.
-class CyclonePeer {
- public:
-  CyclonePeer() {
-    int ends[2];
-    if (pipe(ends) != 0) return;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[1]);
-    std::string program = FURROW_CYCLONE_PEER;
-    std::string domain = std::to_string(test_domain());
-    char* arguments[] = {program.data(), domain.data(), nullptr};
-    setenv("CYCLONEDDS_URI",
-           "<General><Interfaces><NetworkInterface address='127.0.0.1'/></Interfaces>"
-           "<AllowMulticast>false</AllowMulticast></General>"
-           "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
-           "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>",
-           1);
-    started_ = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments, environ) == 0;
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[0]);
-    input_ = ends[1];
-  }
-  ~CyclonePeer() {
-    if (started_) {
-      kill(pid_, SIGKILL);
-      waitpid(pid_, nullptr, 0);
-    }
-    close(input_);
-  }
-  CyclonePeer(const CyclonePeer&) = delete;
-  CyclonePeer& operator=(const CyclonePeer&) = delete;
-  [[nodiscard]] bool started() const { return started_; }
-
- private:
-  pid_t pid_ = 0;
-  int input_ = -1;
-  bool started_ = false;
-};
-
+/// Beside a process with another vendor's DDS.
 class CycloneTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -66,8 +21,13 @@ class CycloneTest : public ::testing::Test {
                                      msgs::event_qos(), [this](const graph::MessagePtr& message) {
                                        answers_.put(*static_cast<const Odometry*>(message.get()));
                                      });
-    peer_.emplace();
-    ASSERT_TRUE(peer_->started());
+    setenv("CYCLONEDDS_URI",
+           "<General><Interfaces><NetworkInterface address='127.0.0.1'/></Interfaces>"
+           "<AllowMulticast>false</AllowMulticast></General>"
+           "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+           "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>",
+           1);
+    peer_.emplace(FURROW_CYCLONE_PEER);
   }
   std::unique_ptr<graph::TransportWriter> writer(const msgs::Topic& topic) {
     auto writer = transport_.make_writer(std::string(topic.name), *topic.type, topic.qos);
@@ -98,7 +58,7 @@ class CycloneTest : public ::testing::Test {
   DdsTransport transport_{test_parameters("furrow")};
   Inbox<Odometry> answers_;
   std::unique_ptr<graph::TransportReader> reader_;
-  std::optional<CyclonePeer> peer_;
+  std::optional<PeerProcess> peer_;
 };
 
 TEST_F(CycloneTest, CycloneReadsOurImages) {

@@ -10,14 +10,12 @@ namespace furrow::dds {
 namespace {
 
 const ProcessInfo* find_process(const DiscoverySnapshot& snapshot, const std::string& name) {
-  const auto found = std::find_if(snapshot.processes.begin(), snapshot.processes.end(),
-                                  [&](const ProcessInfo& process) { return process.name == name; });
+  const auto found = std::ranges::find(snapshot.processes, name, &ProcessInfo::name);
   return found == snapshot.processes.end() ? nullptr : &*found;
 }
 
 const TopicInfo* find_topic(const DiscoverySnapshot& snapshot, const std::string& name) {
-  const auto found = std::find_if(snapshot.topics.begin(), snapshot.topics.end(),
-                                  [&](const TopicInfo& topic) { return topic.name == name; });
+  const auto found = std::ranges::find(snapshot.topics, name, &TopicInfo::name);
   return found == snapshot.topics.end() ? nullptr : &*found;
 }
 

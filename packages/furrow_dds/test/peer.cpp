@@ -1,7 +1,8 @@
-// dds_test_peer DOMAIN: writes "alive" a hundred times a second until it is stopped.
-#include <chrono>
+// dds_test_peer DOMAIN: writes "alive" a hundred times a second until its standard input ends.
+#include <poll.h>
+#include <unistd.h>
+
 #include <cstdlib>
-#include <thread>
 
 #include "test_support.hpp"
 
@@ -15,8 +16,8 @@ int main(int argc, char** argv) {
   furrow::dds::DdsTransport transport(parameters);
   const auto writer =
       transport.make_writer("alive", furrow::dds::string_type(), furrow::dds::watched_qos());
-  while (true) {
-    writer->write(furrow::dds::make_string("alive"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  constexpr int kPeriod_ms = 10;
+  pollfd input = {STDIN_FILENO, POLLIN, 0};
+  while (poll(&input, 1, kPeriod_ms) == 0) writer->write(furrow::dds::make_string("alive"));
+  return 0;
 }

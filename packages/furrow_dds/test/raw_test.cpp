@@ -17,14 +17,32 @@ std::vector<std::byte> cdr_of(const StringMessage& message) {
   return bytes;
 }
 
-TEST(Raw, ReadsTheCdrFormOfATypedWriter) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+RawPayload payload_of(const StringMessage& message) {
+  return std::make_shared<const std::vector<std::byte>>(cdr_of(message));
+}
+
+/// A raw writer and a typed reader of one topic, matched.
+class RawToTyped : public TwoProcesses {
+ protected:
+  void SetUp() override {
+    reader_ = b_.make_reader("text", string_type(), msgs::event_qos(), inbox_.handler());
+    writer_ = a_.make_raw_writer("text", std::string(string_type().dds_name), msgs::event_qos());
+    ASSERT_TRUE(eventually([&] { return writer_->has_readers() && reader_->writers() == 1; }));
+    message_.data("from bytes");
+  }
+
+  StringInbox inbox_;
+  std::unique_ptr<graph::TransportReader> reader_;
+  std::unique_ptr<RawWriter> writer_;
+  StringMessage message_;
+};
+
+TEST_F(TwoProcesses, ReadsTheCdrFormOfATypedWriter) {
   Inbox<RawMessage> inbox;
   const auto reader =
-      b.make_raw_reader("text", std::string(string_type().dds_name), msgs::event_qos(),
-                        [&](RawMessage message) { inbox.put(std::move(message)); });
-  const auto writer = a.make_writer("text", string_type(), msgs::event_qos());
+      b_.make_raw_reader("text", std::string(string_type().dds_name), msgs::event_qos(),
+                         [&](RawMessage message) { inbox.put(std::move(message)); });
+  const auto writer = a_.make_writer("text", string_type(), msgs::event_qos());
   ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
   StringMessage message;
   message.data("as bytes");
@@ -34,37 +52,47 @@ TEST(Raw, ReadsTheCdrFormOfATypedWriter) {
   EXPECT_EQ(raw.payload, cdr_of(message));
   EXPECT_GT(raw.source_time, Time());
   EXPECT_GE(raw.reception_time, raw.source_time);
-  const auto topics = b.discovery().topics;
-  const auto topic = std::find_if(topics.begin(), topics.end(),
-                                  [](const TopicInfo& info) { return info.name == "text"; });
+  const auto topics = b_.discovery().topics;
+  const auto topic = std::ranges::find(topics, "text", &TopicInfo::name);
   ASSERT_NE(topic, topics.end());
   ASSERT_EQ(topic->writers.size(), 1U);
   EXPECT_EQ(topic->writers.front().guid, raw.writer);
 }
 
-TEST(Raw, WritesForATypedReader) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
-  StringInbox inbox;
-  const auto reader = b.make_reader("text", string_type(), msgs::event_qos(), inbox.handler());
-  const auto writer =
-      a.make_raw_writer("text", std::string(string_type().dds_name), msgs::event_qos());
-  ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
-  StringMessage message;
-  message.data("from bytes");
-  writer->write(std::make_shared<const std::vector<std::byte>>(cdr_of(message)));
-  ASSERT_TRUE(inbox.wait_for(1));
-  EXPECT_EQ(inbox.items(), std::vector<std::string>{"from bytes"});
+TEST_F(RawToTyped, SendsFromAQueue) {
+  writer_->write(payload_of(message_));
+  ASSERT_TRUE(inbox_.wait_for(1));
+  EXPECT_EQ(inbox_.items().front(), message_.data());
 }
 
-TEST(Raw, CarriesTypesUnknownAtCompileTime) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+TEST_F(RawToTyped, SendsOnTheCallingThread) {
+  EXPECT_TRUE(writer_->write_now(cdr_of(message_)));
+  EXPECT_FALSE(writer_->write_now(std::vector<std::byte>(3)));
+  ASSERT_TRUE(inbox_.wait_for(1));
+  EXPECT_EQ(inbox_.items().front(), message_.data());
+}
+
+TEST_F(RawToTyped, CountsAndDropsMalformedMessages) {
+  const auto whole = cdr_of(message_);
+  for (std::size_t size = 4; size < whole.size() - 4; size += 3) {
+    writer_->write(std::make_shared<const std::vector<std::byte>>(
+        whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+  }
+  writer_->write(payload_of(message_));
+  ASSERT_TRUE(inbox_.wait_for(1));
+  EXPECT_EQ(inbox_.items().front(), message_.data());
+  ASSERT_TRUE(a_.flush(Duration::seconds(5)));
+  EXPECT_EQ(reader_->counters().dropped, writer_->counters().messages - 1);
+  EXPECT_GT(reader_->counters().dropped, 0U);
+}
+
+TEST_F(TwoProcesses, CarriesTypesUnknownAtCompileTime) {
   Inbox<RawMessage> inbox;
   const std::string type = "someones::msg::dds_::Thing_";
-  const auto reader = b.make_raw_reader("//thing", type, msgs::event_qos(),
-                                        [&](RawMessage message) { inbox.put(std::move(message)); });
-  const auto writer = a.make_raw_writer("//thing", type, msgs::event_qos());
+  const auto reader =
+      b_.make_raw_reader("//thing", type, msgs::event_qos(),
+                         [&](RawMessage message) { inbox.put(std::move(message)); });
+  const auto writer = a_.make_raw_writer("//thing", type, msgs::event_qos());
   ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
   std::vector<std::byte> bytes(1'000'000, std::byte{7});
   bytes[0] = std::byte{0};
@@ -72,29 +100,6 @@ TEST(Raw, CarriesTypesUnknownAtCompileTime) {
   writer->write(std::make_shared<const std::vector<std::byte>>(bytes));
   ASSERT_TRUE(inbox.wait_for(1));
   EXPECT_EQ(inbox.items().front().payload, bytes);
-}
-
-TEST(Raw, MalformedMessagesAreCountedAndDropped) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
-  StringInbox inbox;
-  const auto reader = b.make_reader("text", string_type(), msgs::event_qos(), inbox.handler());
-  const auto writer =
-      a.make_raw_writer("text", std::string(string_type().dds_name), msgs::event_qos());
-  ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
-  StringMessage message;
-  message.data("a text that is cut short");
-  const auto whole = cdr_of(message);
-  for (std::size_t size = 4; size < whole.size() - 4; size += 3) {
-    writer->write(std::make_shared<const std::vector<std::byte>>(
-        whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
-  }
-  writer->write(std::make_shared<const std::vector<std::byte>>(whole));
-  ASSERT_TRUE(inbox.wait_for(1));
-  EXPECT_EQ(inbox.items().front(), message.data());
-  ASSERT_TRUE(a.flush(Duration::seconds(5)));
-  EXPECT_EQ(reader->counters().dropped, writer->counters().messages - 1);
-  EXPECT_GT(reader->counters().dropped, 0U);
 }
 
 TEST(Raw, PayloadsWithoutEncapsulationAreRefused) {
@@ -108,33 +113,15 @@ TEST(Raw, PayloadsWithoutEncapsulationAreRefused) {
   EXPECT_EQ(writer->counters().messages, 0U);
 }
 
-TEST(Raw, WritesOnTheCallingThread) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
-  StringInbox inbox;
-  const auto reader = b.make_reader("text", string_type(), msgs::event_qos(), inbox.handler());
-  const auto writer =
-      a.make_raw_writer("text", std::string(string_type().dds_name), msgs::event_qos());
-  ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
-  StringMessage message;
-  message.data("at once");
-  EXPECT_TRUE(writer->write_now(cdr_of(message)));
-  EXPECT_FALSE(writer->write_now(std::vector<std::byte>(3)));
-  ASSERT_TRUE(inbox.wait_for(1));
-  EXPECT_EQ(inbox.items(), std::vector<std::string>{"at once"});
-}
-
-TEST(Raw, TypedAndRawEndpointsShareATopic) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+TEST_F(TwoProcesses, TypedAndRawEndpointsShareATopic) {
   StringInbox typed;
   Inbox<RawMessage> raw;
   const auto typed_reader =
-      b.make_reader("text", string_type(), msgs::event_qos(), typed.handler());
+      b_.make_reader("text", string_type(), msgs::event_qos(), typed.handler());
   const auto raw_reader =
-      b.make_raw_reader("text", std::string(string_type().dds_name), msgs::event_qos(),
-                        [&](RawMessage message) { raw.put(std::move(message)); });
-  const auto writer = a.make_writer("text", string_type(), msgs::event_qos());
+      b_.make_raw_reader("text", std::string(string_type().dds_name), msgs::event_qos(),
+                         [&](RawMessage message) { raw.put(std::move(message)); });
+  const auto writer = a_.make_writer("text", string_type(), msgs::event_qos());
   ASSERT_TRUE(eventually([&] {
     return writer->has_readers() && typed_reader->writers() == 1 && raw_reader->writers() == 1;
   }));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -93,12 +95,18 @@ inline const msgs::MessageType& image_type() {
   return msgs::message_type<Image>();
 }
 
-inline constexpr Duration kWatchedLease = Duration::milliseconds(200);
 inline msgs::Qos watched_qos() {
   msgs::Qos qos = msgs::event_qos();
-  qos.liveliness_lease = kWatchedLease;
+  qos.liveliness_lease = Duration::milliseconds(200);
   return qos;
 }
+
+/// Two processes of one domain.
+class TwoProcesses : public ::testing::Test {
+ protected:
+  DdsTransport a_{test_parameters("a")};
+  DdsTransport b_{test_parameters("b")};
+};
 
 /// An image of `bytes` with random content by `seed`.
 inline std::shared_ptr<const Image> make_image(std::size_t bytes, std::uint32_t seed) {

@@ -69,13 +69,11 @@ TEST_P(RoundTrip, AnImageOfSixMegabytesArrivesWhole) {
   }
 }
 
-TEST(Transport, AMessageWithAHolderIsNotReused) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+TEST_F(TwoProcesses, AMessageWithAHolderIsNotReused) {
   Inbox<graph::MessagePtr> held;
-  const auto reader = b.make_reader("image", image_type(), msgs::event_qos(),
-                                    [&](graph::MessagePtr message) { held.put(message); });
-  const auto writer = a.make_writer("image", image_type(), msgs::event_qos());
+  const auto reader = b_.make_reader("image", image_type(), msgs::event_qos(),
+                                     [&](graph::MessagePtr message) { held.put(message); });
+  const auto writer = a_.make_writer("image", image_type(), msgs::event_qos());
   ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
   std::vector<std::shared_ptr<const Image>> sent;
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -110,15 +108,13 @@ TEST(Transport, AWriterCountsReadersOfOtherProcessesOnly) {
   EXPECT_EQ(writer->counters().messages, 1U);
 }
 
-TEST(Transport, OwnMessagesAreNotReceived) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+TEST_F(TwoProcesses, OwnMessagesAreNotReceived) {
   StringInbox at_a;
   StringInbox at_b;
-  const auto a_reader = a.make_reader("text", string_type(), msgs::event_qos(), at_a.handler());
-  const auto b_reader = b.make_reader("text", string_type(), msgs::event_qos(), at_b.handler());
-  const auto a_writer = a.make_writer("text", string_type(), msgs::event_qos());
-  const auto b_writer = b.make_writer("text", string_type(), msgs::event_qos());
+  const auto a_reader = a_.make_reader("text", string_type(), msgs::event_qos(), at_a.handler());
+  const auto b_reader = b_.make_reader("text", string_type(), msgs::event_qos(), at_b.handler());
+  const auto a_writer = a_.make_writer("text", string_type(), msgs::event_qos());
+  const auto b_writer = b_.make_writer("text", string_type(), msgs::event_qos());
   ASSERT_TRUE(eventually([&] {
     return a_writer->has_readers() && b_writer->has_readers() && a_reader->writers() == 1 &&
            b_reader->writers() == 1;
@@ -127,7 +123,7 @@ TEST(Transport, OwnMessagesAreNotReceived) {
   ASSERT_TRUE(at_b.wait_for(1));
   b_writer->write(make_string("from b"));
   ASSERT_TRUE(at_a.wait_for(1));
-  EXPECT_TRUE(a.flush(Duration::seconds(5)) && b.flush(Duration::seconds(5)));
+  EXPECT_TRUE(a_.flush(Duration::seconds(5)) && b_.flush(Duration::seconds(5)));
   EXPECT_EQ(at_a.items(), std::vector<std::string>{"from b"});
   EXPECT_EQ(at_b.items(), std::vector<std::string>{"from a"});
   EXPECT_EQ(a_reader->counters().dropped, 0U);
@@ -153,15 +149,13 @@ TEST(Transport, ALateJoinerGetsTheLatchedMessage) {
   }
 }
 
-TEST(Transport, AFullQueueDropsAndCountsTheOldestMessage) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+TEST_F(TwoProcesses, AFullQueueDropsAndCountsTheOldestMessage) {
   Inbox<std::uint32_t> inbox;
-  const auto reader = b.make_reader("image", image_type(), msgs::sensor_stream_qos(),
-                                    [&](const graph::MessagePtr& message) {
-                                      inbox.put(static_cast<const Image*>(message.get())->height());
-                                    });
-  const auto writer = a.make_writer("image", image_type(), msgs::sensor_stream_qos(2));
+  const auto reader = b_.make_reader(
+      "image", image_type(), msgs::sensor_stream_qos(), [&](const graph::MessagePtr& message) {
+        inbox.put(static_cast<const Image*>(message.get())->height());
+      });
+  const auto writer = a_.make_writer("image", image_type(), msgs::sensor_stream_qos(2));
   ASSERT_TRUE(eventually([&] { return writer->has_readers() && reader->writers() == 1; }));
   constexpr std::uint32_t kImages = 300;
   const auto pixels = make_image(3'000'000, 1);
@@ -175,7 +169,7 @@ TEST(Transport, AFullQueueDropsAndCountsTheOldestMessage) {
   for (const auto& image : images) {
     writer->write(image);
   }
-  ASSERT_TRUE(a.flush(Duration::seconds(5)));
+  ASSERT_TRUE(a_.flush(Duration::seconds(5)));
   EXPECT_EQ(writer->counters().messages + writer->counters().dropped, kImages);
   EXPECT_GT(writer->counters().dropped, 0U);
   ASSERT_TRUE(eventually([&] { return inbox.size() > 0 && inbox.items().back() == kImages; }));
@@ -183,14 +177,12 @@ TEST(Transport, AFullQueueDropsAndCountsTheOldestMessage) {
   EXPECT_TRUE(std::is_sorted(got.begin(), got.end()));
 }
 
-TEST(Transport, AnotherTypeIsNotMatched) {
-  DdsTransport a(test_parameters("a"));
-  DdsTransport b(test_parameters("b"));
+TEST_F(TwoProcesses, AnotherTypeIsNotMatched) {
   StringInbox inbox;
-  const auto text = b.make_reader("topic", string_type(), msgs::event_qos(), inbox.handler());
-  const auto image = a.make_writer("topic", image_type(), msgs::event_qos());
+  const auto text = b_.make_reader("topic", string_type(), msgs::event_qos(), inbox.handler());
+  const auto image = a_.make_writer("topic", image_type(), msgs::event_qos());
   EXPECT_TRUE(eventually([&] {
-    const auto topics = b.discovery().topics;
+    const auto topics = b_.discovery().topics;
     return std::any_of(topics.begin(), topics.end(), [](const TopicInfo& topic) {
       return topic.name == "topic" && topic.type_names.size() == 2;
     });

@@ -12,18 +12,7 @@
 
 namespace furrow::dds {
 
-enum class TransportFaultKind {
-  kDeadlineMissed,      ///< a reader waited longer than its topic's deadline
-  kLivelinessLost,      ///< a matched writer of another process fell silent
-  kLivelinessRegained,  ///< and is back
-  kIncompatible,        ///< an endpoint of the topic does not match because of its QoS
-};
-struct TransportFault {
-  TransportFaultKind kind = TransportFaultKind::kDeadlineMissed;
-  std::string topic;
-  /// kIncompatible: "reliability: offered best effort, requested reliable (process 'camera')".
-  std::string detail;
-};
+class Participant;
 
 /// One endpoint, for health reports.
 struct EndpointStatus {
@@ -32,10 +21,11 @@ struct EndpointStatus {
   int peers = 0;                ///< matched endpoints of other processes
   int best_effort_writers = 0;  ///< of these, writers whose messages may get lost unnoticed
   graph::TransportCounters counters;
-  std::uint64_t deadlines_missed = 0;
-  std::uint64_t liveliness_losses = 0;
-  std::uint64_t incompatible = 0;
-  std::string incompatibility;  ///< TransportFault::detail of the last one
+  std::uint64_t deadlines_missed = 0;   ///< of a reader, by its topic's deadline
+  std::uint64_t liveliness_losses = 0;  ///< matched writers of other processes that fell silent
+  std::uint64_t incompatible = 0;       ///< endpoints that do not match because of their QoS
+  /// Of the last one: "reliability: offered best effort, requested reliable (process 'camera')".
+  std::string incompatibility;
 };
 
 /// One participant of a DDS domain, which connects a process with others. Topics are "rt/NAME" in
@@ -77,8 +67,6 @@ class DdsTransport final : public graph::Transport {
   /// DiscoverySnapshot::version, without the snapshot.
   [[nodiscard]] std::uint64_t discovery_version() const;
 
-  /// The receive thread calls `callback`, which must not block. An empty one ends the calls.
-  void on_fault(std::function<void(const TransportFault&)> callback);
   /// The existing endpoints, in the order of their construction.
   [[nodiscard]] std::vector<EndpointStatus> status() const;
 
@@ -87,8 +75,7 @@ class DdsTransport final : public graph::Transport {
   [[nodiscard]] bool flush(Duration timeout);
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<Participant> participant_;
 };
 
 }  // namespace furrow::dds

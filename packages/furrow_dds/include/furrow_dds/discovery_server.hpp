@@ -18,7 +18,7 @@ class DiscoveryServer {
   DiscoveryServer& operator=(const DiscoveryServer&) = delete;
 
  private:
-  class Impl;
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -23,14 +23,8 @@ struct RawMessage {
 
 using RawPayload = std::shared_ptr<const std::vector<std::byte>>;
 
-/// Reads any topic, for recorders and tools. Messages of this process are left out.
-class RawReader {
- public:
-  virtual ~RawReader() = default;
-  [[nodiscard]] virtual graph::TransportCounters counters() const = 0;
-  /// The number of matched writers of other processes.
-  [[nodiscard]] virtual int writers() const = 0;
-};
+/// Reads any topic, for recorders and tools.
+using RawReader = graph::TransportReader;
 
 /// Writes any topic, for players. As graph::TransportWriter, with bytes instead of messages.
 class RawWriter {
