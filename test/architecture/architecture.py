@@ -47,7 +47,7 @@ LAYERS = {
     "furrow_experiments": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph", "furrow_components"},
     "furrow_launch": SYSTEM | {"furrow_components", "furrow_ledger", "furrow_field",
                                "furrow_geometry", "furrow_recording"},
-    "furrow_supervisor": SYSTEM | {"furrow_launch", "furrow_components"},
+    "furrow_supervisor": SYSTEM | {"furrow_actuation", "furrow_launch", "furrow_components"},
     "furrow_evaluation": ALGORITHMS | SYSTEM | {"furrow_components", "furrow_launch"},
     "furrow_benchmarks": SYSTEM | {"furrow_evaluation", "furrow_launch", "furrow_recording",
                                    "furrow_supervisor", "furrow_vision"},

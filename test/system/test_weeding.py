@@ -9,7 +9,8 @@ from furrow_case import FurrowCase, furrow_program
 LENGTH_M = 2
 WALL_CLOCK_KEYS = {"realtime_factor", "wall_s"}
 MISSES = {"undetected", "unconfirmed", "misclassified", "low_priority", "protected_crop",
-          "unreachable", "stale", "outside", "fault", "placement", "end_of_run"}
+          "unreachable", "stale", "outside", "fault", "placement", "end_of_run",
+          "inactive"}
 # What a planner may lose when it sees everything and the machine does as it says.
 PLANNING_MISSES = {"low_priority", "protected_crop", "unreachable", "outside", "end_of_run"}
 

@@ -40,11 +40,13 @@ void control_cycle(benchmark::State& state) {
                                {x_m + 0.02 * static_cast<double>(i), 0.5}};
       }
       if (!controller.set_plan(now, plan).ok()) state.SkipWithError("the plan was not taken");
-      controller.set_protected(protected_plants);
+      controller.set_protected(now, protected_plants);
     }
     (void)driver.read(now, kPeriod).ok();
-    controller.set_reading(driver.reading());
+    controller.set_reading(now, driver.reading());
+    controller.safety().heartbeat_came(now);
     const ControllerOutput output = controller.update(now, kPeriod);
+    controller.safety().valve_written(now, output.valve_open, true);
     (void)driver.write(now, kPeriod, output.axis).ok();
     for (const ControllerEvent& event : output.events) {
       sprays += event.kind == ControllerEventKind::kSprayClosed ? 1 : 0;

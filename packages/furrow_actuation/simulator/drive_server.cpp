@@ -16,7 +16,7 @@
 namespace furrow::actuation::drive_simulator {
 namespace {
 
-constexpr int kPollMs = 20;
+constexpr int kPollMs = 5;
 constexpr std::size_t kUnitByte = 6;
 constexpr std::size_t kDataByte = 19;
 
@@ -106,19 +106,27 @@ void DriveServer::stop() {
   stopping_ = true;
 }
 
-void DriveServer::serve(const std::function<bool()>& before_request) {
+void DriveServer::serve(const std::function<bool()>& before_request,
+                        const std::function<void()>& idle) {
   while (!stopping_) {
-    if (!readable(listener_->socket)) continue;
+    if (!readable(listener_->socket)) {
+      if (idle) idle();
+      continue;
+    }
     if (modbus_tcp_accept(listener_->context, &listener_->socket) < 0) continue;
-    while (!stopping_ && serve_one(before_request)) {
+    while (!stopping_ && serve_one(before_request, idle)) {
     }
     modbus_close(listener_->context);
   }
 }
 
-bool DriveServer::serve_one(const std::function<bool()>& before_request) {
+bool DriveServer::serve_one(const std::function<bool()>& before_request,
+                            const std::function<void()>& idle) {
   const int socket = modbus_get_socket(listener_->context);
-  if (!readable(socket)) return true;
+  if (!readable(socket)) {
+    if (idle) idle();
+    return true;
+  }
   std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> buffer{};
   const int head = modbus_receive(listener_->context, buffer.data());
   constexpr int kMbapBytes = 6;
@@ -133,6 +141,7 @@ bool DriveServer::serve_one(const std::function<bool()>& before_request) {
     filled += static_cast<int>(got);
   }
   if (filled != total || !before_request()) return false;
+  drive_.contact();
   const auto reply = answer(drive_, {buffer.begin(), buffer.begin() + total});
   return send(socket, reply.data(), reply.size(), MSG_NOSIGNAL) ==
          static_cast<ssize_t>(reply.size());

@@ -21,14 +21,15 @@ class DriveServer {
 
   [[nodiscard]] int port() const { return port_; }
   /// Serves until stop(). `before_request` is called in the serving thread before each request is
-  /// answered: there time moves. False cuts the connection instead of answering.
-  void serve(const std::function<bool()>& before_request);
+  /// answered: there time moves. False cuts the connection instead of answering. `idle` is called
+  /// every few milliseconds while nothing is received.
+  void serve(const std::function<bool()>& before_request, const std::function<void()>& idle = {});
   /// May be called from another thread.
   void stop();
 
  private:
   struct Listener;
-  bool serve_one(const std::function<bool()>& before_request);
+  bool serve_one(const std::function<bool()>& before_request, const std::function<void()>& idle);
 
   SimulatedDrive& drive_;
   std::unique_ptr<Listener> listener_;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kFollowingErrorWindow = 5000.0;
 constexpr std::uint16_t kFollowingErrorCode = 0x8611;
+constexpr std::uint16_t kConnectionErrorCode = 0x8100;  // of communication, by CiA 301
+constexpr std::uint16_t kWatchdog = 0x2010;             // an object of this manufacturer
 
 bool bit(std::uint16_t word, int n) {
   return (word >> n & 1) != 0;
@@ -19,11 +21,22 @@ SimulatedDrive::SimulatedDrive() {
   parameters_ = {{{0x607A, 0}, 12345},   {{0x607D, 1}, -200000}, {{0x607D, 2}, 200000},
                  {{0x6081, 0}, 100000},  {{0x6083, 0}, 1000000}, {{0x6084, 0}, 1000000},
                  {{0x6085, 0}, 5000000}, {{0x6098, 0}, 37},      {{0x6099, 1}, 5000},
-                 {{0x6099, 2}, 5000},    {{0x609A, 0}, 50000}};
+                 {{0x6099, 2}, 5000},    {{0x609A, 0}, 50000},   {{0x605A, 0}, 2},
+                 {{0x605E, 0}, 1},       {{0x6007, 0}, 1},       {{kWatchdog, 0}, 0}};
+}
+
+void SimulatedDrive::enter(Phase phase) {
+  if (phase_ == phase) return;
+  phase_ = phase;
+  if (told_) told_(phase);
 }
 
 double SimulatedDrive::parameter(std::uint16_t index, std::uint8_t sub) const {
-  return parameters_.at({index, sub});
+  const auto found = parameters_.find({index, sub});
+  if (found != parameters_.end()) return found->second;
+  // What the drive does is fixed where its dictionary has no object for it.
+  constexpr double kFixedDeceleration = 5000000.0;
+  return index == 0x6085 ? kFixedDeceleration : 0.0;
 }
 
 std::uint16_t SimulatedDrive::statusword() const {
@@ -109,6 +122,15 @@ SimulatedDrive::Answer SimulatedDrive::write(std::uint16_t index, std::uint8_t s
   if (found == parameters_.end()) {
     return read(index, sub) ? Answer::kReadOnly : Answer::kNoObject;
   }
+  const bool option = index == 0x605A || index == 0x605E || index == 0x6007;
+  const bool known_option = index == 0x605A   ? value == 2 || value == 6
+                            : index == 0x605E ? value >= 0 && value <= 2
+                                              : value >= 0 && value <= 3;
+  if (option ? !known_option : index == kWatchdog && value < 0) return Answer::kBadValue;
+  if (option || index == kWatchdog) {
+    found->second = value;
+    return Answer::kOk;
+  }
   const bool position = index == 0x607A;
   if (position && (value < parameter(0x607D, 1) || value > parameter(0x607D, 2))) {
     return Answer::kBadValue;
@@ -124,33 +146,37 @@ void SimulatedDrive::take_controlword(std::uint16_t word) {
   controlword_ = word;
   if (phase_ == Phase::kFaulted) {
     if (reset_edge && !cause_lasts_) {
-      phase_ = Phase::kLocked;
+      enter(Phase::kLocked);
       error_code_ = 0;
       following_error_ = false;
     }
     return;
   }
   if (phase_ == Phase::kStarting || phase_ == Phase::kReacting) return;
+  change_phase(word, before);
+  if (phase_ != Phase::kOperating) homing_ = false;
+}
+
+void SimulatedDrive::change_phase(std::uint16_t word, std::uint16_t before) {
   const bool powered = phase_ == Phase::kOperating || phase_ == Phase::kQuickStop;
   if (!bit(word, 1)) {  // disable voltage, from every state
-    phase_ = Phase::kLocked;
+    enter(Phase::kLocked);
   } else if (!bit(word, 2)) {  // quick stop
-    phase_ = powered ? Phase::kQuickStop : Phase::kLocked;
+    enter(powered ? Phase::kQuickStop : Phase::kLocked);
   } else if (phase_ == Phase::kQuickStop) {
     return;                    // leaves by disable voltage only
   } else if (!bit(word, 0)) {  // shutdown
-    phase_ = Phase::kPrepared;
+    enter(Phase::kPrepared);
   } else if (phase_ == Phase::kPrepared || (phase_ == Phase::kOperating && !bit(word, 3))) {
-    phase_ = Phase::kPoweredOn;  // switch on; disable operation
+    enter(Phase::kPoweredOn);  // switch on; disable operation
   } else if (phase_ == Phase::kPoweredOn && bit(word, 3)) {
-    phase_ = Phase::kOperating;
+    enter(Phase::kOperating);
     demand_ = target_ = position_;
     parameters_[{0x607A, 0}] = static_cast<std::int32_t>(std::lround(position_));
   } else if (phase_ == Phase::kOperating) {
     if (bit(word, 4) && !bit(before, 4)) start_action();
     if (!bit(word, 4)) acknowledged_ = false;
   }
-  if (phase_ != Phase::kOperating) homing_ = false;
 }
 
 void SimulatedDrive::start_action() {
@@ -169,7 +195,7 @@ void SimulatedDrive::fault(std::uint16_t error_code) {
   cause_lasts_ = true;
   error_code_ = error_code;
   homing_ = false;
-  phase_ = Phase::kReacting;
+  enter(Phase::kReacting);
 }
 
 void SimulatedDrive::brake(double deceleration, double h) {
@@ -197,51 +223,86 @@ void SimulatedDrive::advance(double seconds) {
   unsimulated_s_ += seconds;
   const auto steps = static_cast<int>(std::floor(unsimulated_s_ / kStep + 1e-6));
   unsimulated_s_ = std::max(0.0, unsimulated_s_ - steps * kStep);
-  for (int step = 0; step < steps; ++step) {
-    switch (phase_) {
-      case Phase::kStarting:
-        phase_ = Phase::kLocked;
-        break;
-      case Phase::kReacting:
-        brake(parameter(0x6085), kStep);
-        if (velocity_ == 0.0) phase_ = Phase::kFaulted;
-        break;
-      case Phase::kOperating:
-        if (bit(controlword_, 8)) {
-          brake(parameter(0x6084), kStep);
-          target_ = demand_;
-        } else if (mode_ == 1) {
-          move_towards(target_, parameter(0x6081), parameter(0x6083), kStep);
-        } else if (mode_ == 8) {
-          target_ = parameter(0x607A);
-          const double v =
-              std::clamp((target_ - demand_) / 1e-3, -parameter(0x6081), parameter(0x6081));
-          velocity_ = v;
-          demand_ += v * kStep;
-        } else if (mode_ == 6 && homing_ && !reference_missing_) {
-          move_towards(0.0, parameter(0x6099, 1), parameter(0x609A), kStep);
-          if (demand_ == 0.0 && velocity_ == 0.0) {
-            homing_ = false;
-            homed_ = true;
-            target_ = 0.0;
-          }
-        } else if (mode_ == 6 && homing_) {
-          homing_ = false;
-          homing_error_ = true;
-        }
-        break;
-      default:
-        brake(parameter(0x6085), kStep);
-        break;
-    }
-    if (!jammed_) position_ = demand_;
-    if (phase_ == Phase::kOperating && std::abs(demand_ - position_) > kFollowingErrorWindow) {
-      following_error_ = true;
-      fault(kFollowingErrorCode);
-      velocity_ = 0.0;
-      demand_ = position_;
-      cause_lasts_ = false;
-    }
+  for (int i = 0; i < steps; ++i) {
+    watch_connection(kStep);
+    step(kStep);
+  }
+}
+
+void SimulatedDrive::watch_connection(double h) {
+  unheard_s_ += h;
+  const auto limit = parameters_.find({kWatchdog, 0});
+  if (limit == parameters_.end() || limit->second == 0) return;
+  if (phase_ != Phase::kOperating || unheard_s_ * 1e3 <= limit->second) return;
+  const double option = parameter(0x6007);
+  watchdog_acted_ = option != 0;
+  if (option == 1) {
+    fault(kConnectionErrorCode);
+    cause_lasts_ = false;
+  } else if (option == 2) {
+    enter(Phase::kLocked);
+  } else if (option == 3) {
+    enter(Phase::kQuickStop);
+  }
+}
+
+void SimulatedDrive::step(double h) {
+  switch (phase_) {
+    case Phase::kStarting:
+      enter(Phase::kLocked);
+      break;
+    case Phase::kReacting:
+      brake(parameter(0x6085), h);
+      if (velocity_ == 0.0) enter(Phase::kFaulted);
+      break;
+    case Phase::kOperating:
+      operate(h);
+      break;
+    case Phase::kQuickStop:
+      brake(parameter(0x6085), h);
+      if (velocity_ == 0.0 && parameter(0x605A) == 2) enter(Phase::kLocked);
+      break;
+    default:
+      brake(parameter(0x6085), h);
+      break;
+  }
+  if (!jammed_) position_ = demand_;
+  if (phase_ == Phase::kOperating && std::abs(demand_ - position_) > kFollowingErrorWindow) {
+    following_error_ = true;
+    fault(kFollowingErrorCode);
+    velocity_ = 0.0;
+    demand_ = position_;
+    cause_lasts_ = false;
+  }
+}
+
+void SimulatedDrive::operate(double h) {
+  if (bit(controlword_, 8)) {
+    brake(parameter(0x6084), h);
+    target_ = demand_;
+  } else if (mode_ == 1) {
+    move_towards(target_, parameter(0x6081), parameter(0x6083), h);
+  } else if (mode_ == 8) {
+    target_ = parameter(0x607A);
+    const double v = std::clamp((target_ - demand_) / 1e-3, -parameter(0x6081), parameter(0x6081));
+    velocity_ = v;
+    demand_ += v * h;
+  } else if (mode_ == 6 && homing_) {
+    home(h);
+  }
+}
+
+void SimulatedDrive::home(double h) {
+  if (reference_missing_) {
+    homing_ = false;
+    homing_error_ = true;
+    return;
+  }
+  move_towards(0.0, parameter(0x6099, 1), parameter(0x609A), h);
+  if (demand_ == 0.0 && velocity_ == 0.0) {
+    homing_ = false;
+    homed_ = true;
+    target_ = 0.0;
   }
 }
 

@@ -8,15 +8,6 @@
 namespace furrow::actuation {
 namespace {
 
-bool operational(AxisState state) {
-  return state == AxisState::kReady || state == AxisState::kMoving;
-}
-
-bool older_than(Time stamp, Time now, double seconds) {
-  // A stamp from the future is no fresher than one equally far in the past.
-  return std::abs((now - stamp).to_seconds()) > seconds;
-}
-
 bool finite(const BaseState& base) {
   return std::isfinite(base.X_FB.x_m) && std::isfinite(base.X_FB.y_m) &&
          std::isfinite(base.X_FB.heading_rad) && std::isfinite(base.twist_B.vx_mps) &&
@@ -32,6 +23,7 @@ AxisController::AxisController(const geometry::AxisModel& axis,
       axis_(axis),
       limits_(MotionLimits::of(axis)),
       parameters_(parameters),
+      safety_(parameters.safety, axis.lower_m, axis.upper_m),
       meter_(calibration.flow_mlps) {
   if (!plan_s_curve(limits_, {limits_.lower_m, 0.0, 0.0}, limits_.lower_m).ok()) {
     throw ConfigError("axis " + axis.name + ": its limits are not positive or not ordered");
@@ -52,10 +44,10 @@ void AxisController::set_calibration(const NozzleCalibration& calibration) {
   axis_.p_BN0.head<2>() += Eigen::Vector2d(calibration.offset_x_m, calibration.offset_y_m);
 }
 
-Status AxisController::set_plan(Time stamp, std::span<const PlannedStop> stops) {
+Status AxisController::set_plan(Time now, std::span<const PlannedStop> stops) {
   plan_.clear();
   next_stop_ = 0;
-  plan_stamp_ = stamp;
+  safety_.plan_came(now);
   Status status;
   for (const PlannedStop& stop : stops) {
     if (!stop.p_F.allFinite() || stop.targets.empty()) {
@@ -69,98 +61,90 @@ Status AxisController::set_plan(Time stamp, std::span<const PlannedStop> stops) 
 }
 
 void AxisController::set_odometry(const BaseState& base) {
-  odometry_valid_ = finite(base);
-  if (odometry_valid_) base_ = base;
+  const bool valid = finite(base);
+  safety_.odometry_came(base.stamp, valid);
+  if (!valid) return;
+  base_ = base;
+  progress_.add(base);
 }
 
-void AxisController::set_protected(std::span<const ProtectedPlant> plants) {
+void AxisController::set_protected(Time newest_image, std::span<const ProtectedPlant> plants) {
   protected_.clear();
-  protection_valid_ = true;
+  Protection protection = Protection::kComplete;
   for (const ProtectedPlant& plant : plants) {
-    if (!plant.p_F.allFinite() || !protected_.push_back(plant)) protection_valid_ = false;
+    if (!plant.p_F.allFinite()) {
+      protection = Protection::kNotFinite;
+    } else if (!protected_.push_back(plant)) {
+      protection = Protection::kTooMany;
+    }
   }
+  safety_.tracks_came(newest_image, protection);
 }
 
-void AxisController::set_reading(const AxisReading& reading) {
+void AxisController::set_reading(Time now, const AxisReading& reading) {
   reading_ = reading;
+  safety_.drive_read(reading, now);
 }
 
-SafetyCause AxisController::find_cause(Time now) const {
-  if (emergency_stop_) return SafetyCause::kEmergencyStop;
-  if (reading_ && reading_->state == AxisState::kEmergencyStop) return SafetyCause::kEmergencyStop;
-  if (valve_fault_) return SafetyCause::kValveFault;
-  if (!protection_valid_) return SafetyCause::kProtectionOverflow;
-  if (!odometry_valid_) return SafetyCause::kOdometryInvalid;
-  return mode_ == ControllerMode::kRunning ? find_running_cause(now) : SafetyCause::kNone;
+void AxisController::obey_safety(Time now) {
+  const bool ended = (now - profile_start_).to_seconds() >= profile_.duration_s();
+  safety_.update(now, ended && !seen_moving(now));
+  const ControllerMode before = mode_;
+  mode_ = safety_.mode();
+  if (before != mode_ && before == ControllerMode::kRunning) {
+    const bool raised = mode_ == ControllerMode::kInactive;
+    stop_motion(now, raised ? SkipReason::kInactive : SkipReason::kFault);
+  }
+  if (before != mode_ && mode_ == ControllerMode::kRunning) {
+    adopt_drive_setpoint(now);
+    if (before == ControllerMode::kInactive) progress_.begin_new_ground();
+  }
+  report_safety_events();
 }
 
-SafetyCause AxisController::find_running_cause(Time now) const {
-  if (peer_lost_) return SafetyCause::kPeerLost;
-  if (older_than(reading_->stamp, now, parameters_.reading_deadline_s)) {
-    return SafetyCause::kReadingStale;
-  }
-  if (reading_->fault == DriveFault::kFollowingError) return SafetyCause::kFollowingError;
-  if (reading_->fault == DriveFault::kPositionLimit) return SafetyCause::kPositionLimit;
-  if (!operational(reading_->state) || !reading_->homed) return SafetyCause::kDriveFault;
-  if (!std::isfinite(reading_->position_m) ||
-      reading_->position_m < limits_.lower_m - parameters_.position_margin_m ||
-      reading_->position_m > limits_.upper_m + parameters_.position_margin_m) {
-    return SafetyCause::kPositionLimit;
-  }
-  if (following_error_since_ &&
-      (now - *following_error_since_).to_seconds() >= parameters_.following_error_time_s) {
-    return SafetyCause::kFollowingError;
-  }
-  if (older_than(base_->stamp, now, parameters_.odometry_deadline_s)) {
-    return SafetyCause::kOdometryStale;
-  }
-  if (older_than(*plan_stamp_, now, parameters_.plan_deadline_s)) return SafetyCause::kPlanStale;
-  return SafetyCause::kNone;
+// Of a drive that stops by itself; the velocity of an old reading says nothing.
+bool AxisController::seen_moving(Time now) const {
+  constexpr double kMoving_mps = 0.01;
+  return mode_ == ControllerMode::kSafe && reading_ && reading_->stamp == now &&
+         std::abs(reading_->velocity_mps) > kMoving_mps;
 }
 
-bool AxisController::everything_there(Time now) const {
-  return reading_ && base_ && plan_stamp_ && !peer_lost_ && reading_->state == AxisState::kReady &&
-         reading_->homed && !older_than(reading_->stamp, now, parameters_.reading_deadline_s) &&
-         reading_->position_m >= limits_.lower_m - parameters_.position_margin_m &&
-         reading_->position_m <= limits_.upper_m + parameters_.position_margin_m &&
-         !older_than(base_->stamp, now, parameters_.odometry_deadline_s) &&
-         !older_than(*plan_stamp_, now, parameters_.plan_deadline_s);
-}
-
-void AxisController::track_following_error(Time now) {
-  const bool beyond =
-      reading_ && !(std::abs(reading_->following_error_m) <= parameters_.following_error_limit_m);
-  if (!beyond) {
-    following_error_since_.reset();
-  } else if (!following_error_since_) {
-    following_error_since_ = now;
-  }
-}
-
-void AxisController::make_safe(Time now, SafetyCause cause) {
-  if (spray_) close_spray(now, SkipReason::kFault);
+void AxisController::stop_motion(Time now, SkipReason reason) {
+  if (spray_) close_spray(now, reason);
   spray_.reset();
   passing_.reset();
-  mode_ = ControllerMode::kSafe;
-  cause_ = cause;
-  cause_time_ = now;
   profile_ = plan_stop(limits_, setpoint_);
   profile_start_ = now;
-  ControllerEvent event;
-  event.kind = ControllerEventKind::kMadeSafe;
-  event.time = now;
-  event.cause = cause;
-  events_.push_back(event);
 }
 
-void AxisController::give_up_due_stops(Time now) {
+void AxisController::report_safety_events() {
+  for (const SafetyEvent& found : safety_.take_events()) {
+    ControllerEvent event;
+    switch (found.kind) {
+      case SafetyEvent::Kind::kLatched:
+        event.kind = ControllerEventKind::kSafeState;
+        break;
+      case SafetyEvent::Kind::kReset:
+        event.kind = ControllerEventKind::kReset;
+        break;
+      case SafetyEvent::Kind::kResetRefused:
+        event.kind = ControllerEventKind::kResetRefused;
+        break;
+    }
+    event.time = found.time;
+    event.cause = found.cause;
+    events_.push_back(event);
+  }
+}
+
+void AxisController::give_up_due_stops(Time now, SkipReason reason) {
   for (; next_stop_ < plan_.size() && !events_full(); ++next_stop_) {
     const PlannedStop& stop = plan_[next_stop_];
     if (finished(stop)) continue;
     if (!base_) break;
     const auto aim = aim_at(stop);
     if (!aim || aim->crossing.emission > now) break;
-    skip(stop, SkipReason::kFault, now);
+    skip(stop, reason, now);
   }
 }
 
@@ -168,52 +152,43 @@ ControllerOutput AxisController::update(Time now, Duration period) {
   events_.clear();
   setpoint_ = motion_at(now);
   follow_drive_after_gap(now, period);
-  track_following_error(now);
-
-  const bool stopped = (now - profile_start_).to_seconds() >= profile_.duration_s();
-  if (reset_requested_ && mode_ == ControllerMode::kSafe && stopped) {
-    reset_requested_ = false;
-    mode_ = ControllerMode::kWaiting;
-    cause_ = SafetyCause::kNone;
-    ControllerEvent event;
-    event.kind = ControllerEventKind::kReset;
-    event.time = now;
-    events_.push_back(event);
-  }
-  if (mode_ != ControllerMode::kSafe) reset_requested_ = false;
-
-  const SafetyCause cause = find_cause(now);
-  if (cause != SafetyCause::kNone && mode_ != ControllerMode::kSafe) make_safe(now, cause);
-  if (mode_ == ControllerMode::kWaiting && everything_there(now)) {
-    mode_ = ControllerMode::kRunning;
-    adopt_drive_setpoint(now);
-  }
+  obey_safety(now);
   if (mode_ == ControllerMode::kRunning) {
     run(now, period);
   } else {
-    give_up_due_stops(now);
+    const bool raised = mode_ == ControllerMode::kInactive;
+    give_up_due_stops(now, raised ? SkipReason::kInactive : SkipReason::kFault);
   }
-
   ControllerOutput output;
   output.valve_open = spray_ && spray_->open && !spray_->dry_run;
   meter_.command(now, output.valve_open);
-  const bool stopping = mode_ == ControllerMode::kSafe && reading_ && operational(reading_->state);
+  output.axis = axis_command(now, period);
+  output.mode = mode_;
+  output.cause = safety_.first_cause();
+  output.cause_time = safety_.cause_time();
+  output.events = events_;
+  return output;
+}
+
+AxisCommand AxisController::axis_command(Time now, Duration period) {
+  const bool holds =
+      mode_ == ControllerMode::kInactive ||
+      (mode_ == ControllerMode::kSafe && safety_.stop() == StopCategory::kStandAndHold);
+  const bool stopping = holds && reading_ && in_service(*reading_);
   if (stopping && (now - profile_start_).to_seconds() >= profile_.duration_s()) {
     adopt_drive_setpoint(now);
   }
   if (mode_ == ControllerMode::kRunning || stopping) {
     const MotionState end = motion_at(now + period);
-    output.axis = {AxisCommandMode::kCyclic, end.position_m, end.velocity_mps,
-                   profile_.final_state().position_m};
-  } else if (reading_ && std::isfinite(reading_->position_m)) {
+    return {AxisCommandMode::kCyclic, end.position_m, end.velocity_mps,
+            profile_.final_state().position_m};
+  }
+  // The drive stops by itself, or does not take setpoints yet.
+  if (reading_ && std::isfinite(reading_->position_m)) {
     profile_ = MotionProfile::standing(reading_->position_m);
     profile_start_ = now;
   }
-  output.mode = mode_;
-  output.cause = cause_;
-  output.cause_time = cause_time_;
-  output.events = events_;
-  return output;
+  return {};
 }
 
 void AxisController::adopt_drive_setpoint(Time now) {
@@ -283,7 +258,7 @@ void AxisController::skip(const PlannedStop& stop, SkipReason reason, Time now) 
   event.aim_F = stop.p_F;
   event.q_m = setpoint_.position_m;
   event.reason = reason;
-  event.cause = reason == SkipReason::kFault ? cause_ : SafetyCause::kNone;
+  event.cause = reason == SkipReason::kFault ? safety_.first_cause() : SafetyCause::kNone;
   events_.push_back(event);
 }
 

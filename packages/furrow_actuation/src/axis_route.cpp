@@ -71,7 +71,7 @@ bool AxisController::approach_stop(std::size_t index, Time now, Duration period)
   const PlannedStop& stop = plan_[index];
   const auto aim = aim_at(stop);
   if (!aim) return false;
-  if ((now - stop.observed).to_seconds() > parameters_.max_target_age_s) {
+  if (progress_.motion_s(stop.observed, now) > parameters_.max_target_age_s) {
     skip(stop, SkipReason::kStale, now);
     return true;
   }
@@ -177,6 +177,8 @@ bool AxisController::protects(const Landing& landing) const {
 bool AxisController::fire_when_due(const PlannedStop& stop, const Aim& aim, bool passing, Time now,
                                    Duration period) {
   if (aim.window.open_command > now + half(period)) return false;
+  // Ground that was passed had its turn: a robot that reversed drives back over it first.
+  if (progress_.behind_m() > parameters_.reverse_tolerance_m) return false;
   if (last_close_ && (now - *last_close_).to_seconds() < parameters_.min_off_s) return false;
   const Time first = now + Duration::seconds(calibration_.open_delay_s);
   const Time middle = first + Duration::seconds(parameters_.dwell_s / 2.0);
@@ -188,7 +190,7 @@ bool AxisController::fire_when_due(const PlannedStop& stop, const Aim& aim, bool
   }
   const Landing landing = predict_landing(middle);
   constexpr double kSpeedMargin = 1.01;
-  if ((now - stop.observed).to_seconds() > parameters_.max_target_age_s) {
+  if (progress_.motion_s(stop.observed, now) > parameters_.max_target_age_s) {
     skip(stop, SkipReason::kStale, now);
   } else if (!((landing.middle_F - stop.p_F).norm() <= parameters_.placement_tolerance_m) ||
              !(landing.q_velocity_mps <= parameters_.max_fire_speed_mps * kSpeedMargin)) {

@@ -1,8 +1,12 @@
 #include "furrow_actuation/drive_supervisor.hpp"
 
+#include <cmath>
+
 namespace furrow::actuation {
 
 void DriveSupervisor::reset(Time now) {
+  out_ = false;
+  power_off_confirmed_ = false;
   wanted_ = true;
   reset_requested_ = true;
   homing_requested_ = false;
@@ -20,8 +24,37 @@ void DriveSupervisor::ask(Time now, const Status& answer) {
   }
 }
 
+void DriveSupervisor::take_out() {
+  out_ = true;
+  wanted_ = false;
+  reset_requested_ = false;
+}
+
 void DriveSupervisor::update(Time now, AxisDriver& driver) {
-  if (!wanted_) return;
+  if (out_) {
+    continue_out(now, driver);
+  } else if (wanted_) {
+    bring_in(now, driver);
+  }
+}
+
+void DriveSupervisor::continue_out(Time now, AxisDriver& driver) {
+  constexpr double kStanding_mps = 1e-3;
+  const AxisReading& reading = driver.reading();
+  const bool fresh = reading.stamp == now;
+  power_off_confirmed_ = fresh && !reading.powered;
+  if (power_off_confirmed_) return;
+  const bool stopped = fresh && reading.state == AxisState::kEmergencyStop &&
+                       std::abs(reading.velocity_mps) < kStanding_mps;
+  const Status answer = stopped ? driver.disable(now) : driver.emergency_stop(now);
+  if (answer.ok()) {
+    refusal_.clear();
+  } else {
+    refusal_ = answer.error().message;
+  }
+}
+
+void DriveSupervisor::bring_in(Time now, AxisDriver& driver) {
   const AxisReading reading = driver.reading();
   switch (reading.state) {
     case AxisState::kReady:

@@ -26,7 +26,7 @@ class LibgpiodLine {
   [[nodiscard]] gpiod_line* get() const { return line_; }
   void require(int requested) const {
     if (requested == 0) return;
-    throw ConfigError("GPIO: " + name_ + " is not to be had: " + std::strerror(errno));
+    throw ConfigError("GPIO: " + name_ + " cannot be requested: " + std::strerror(errno));
   }
 
  private:

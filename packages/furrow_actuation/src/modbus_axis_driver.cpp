@@ -1,89 +1,29 @@
 #include "furrow_actuation/modbus_axis_driver.hpp"
 
-#include <modbus.h>
-#include <poll.h>
-#include <sys/socket.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "cia402_objects.hpp"
 #include "furrow_core/error.hpp"
+#include "gateway_connection.hpp"
 
 namespace furrow::actuation::cia402 {
 namespace {
 
-constexpr Object kControlword{0x6040, 0, 2};
-constexpr Object kStatusword{0x6041, 0, 2};
-constexpr Object kModeOfOperation{0x6060, 0, 1};
-constexpr Object kPosition{0x6064, 0, 4};
-constexpr Object kVelocity{0x606C, 0, 4};
-constexpr Object kTargetPosition{0x607A, 0, 4};
-constexpr Object kLowerLimit{0x607D, 1, 4};
-constexpr Object kUpperLimit{0x607D, 2, 4};
-constexpr Object kProfileVelocity{0x6081, 0, 4};
-constexpr Object kProfileAcceleration{0x6083, 0, 4};
-constexpr Object kProfileDeceleration{0x6084, 0, 4};
-constexpr Object kHomingMethod{0x6098, 0, 1};
-constexpr Object kHomingSearchSpeed{0x6099, 1, 4};
-constexpr Object kHomingCreepSpeed{0x6099, 2, 4};
-constexpr Object kHomingAcceleration{0x609A, 0, 4};
-constexpr Object kFollowingErrorValue{0x60F4, 0, 4};
-constexpr Object kSupportedModes{0x6502, 0, 4};
+using namespace objects;
 
-Error unavailable(const char* why) {
-  return {ErrorCode::kUnavailable, why};
+constexpr double kStanding_mps = 1e-3;
+
+Error unavailable(std::string why) {
+  return {ErrorCode::kUnavailable, std::move(why)};
+}
+
+void require_fits(double units, double greatest, const char* what) {
+  if (std::isfinite(units) && std::abs(units) <= greatest) return;
+  throw ConfigError(std::string("Modbus axis: ") + what + " does not fit into the drive's units");
 }
 
 }  // namespace
-
-struct ModbusAxisDriver::Connection {
-  explicit Connection(modbus_t* opened) : context(opened) {}
-  ~Connection() {
-    modbus_close(context);
-    modbus_free(context);
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  modbus_t* context;
-};
-
-void ModbusAxisParameters::visit(ParameterVisitor& v) {
-  v.visit({.name = "address", .description = "IP address of the drive"}, address);
-  v.visit({.name = "port", .description = "its Modbus TCP port", .min = 1, .max = 65535}, port);
-  v.visit({.name = "unit", .description = "its unit identifier", .min = 0, .max = 255}, unit);
-  v.visit({.name = "timeout_s",
-           .unit = "s",
-           .description = "an exchange that takes longer is a lost connection",
-           .min = 0.001,
-           .max = 5.0},
-          timeout_s);
-  v.visit({.name = "counts_per_m",
-           .description = "the drive's position units in a meter",
-           .min = 1.0,
-           .max = 1e8},
-          counts_per_m);
-  v.visit({.name = "homing_speed_mps",
-           .unit = "m/s",
-           .description = "speed of the search for the reference",
-           .min = 1e-4,
-           .max = 5.0},
-          homing_speed_mps);
-  v.visit({.name = "homing_acceleration_mps2",
-           .unit = "m/s2",
-           .description = "acceleration while homing",
-           .min = 1e-3,
-           .max = 100.0},
-          homing_acceleration_mps2);
-  v.visit({.name = "homing_method",
-           .description = "object 6098h, as the drive's manual numbers the methods",
-           .min = -128,
-           .max = 127},
-          homing_method);
-  v.visit({.name = "has_following_error",
-           .description = "the drive offers object 60F4h; otherwise its own limit alone watches"},
-          has_following_error);
-}
 
 ModbusAxisDriver::ModbusAxisDriver(const MotionLimits& limits,
                                    const ModbusAxisParameters& parameters)
@@ -91,20 +31,46 @@ ModbusAxisDriver::ModbusAxisDriver(const MotionLimits& limits,
   if (!plan_s_curve(limits, {limits.lower_m, 0.0, 0.0}, limits.lower_m).ok()) {
     throw ConfigError("Modbus axis: the limits are not positive or not ordered");
   }
-  const double greatest = std::max({std::abs(limits.lower_m), std::abs(limits.upper_m),
-                                    limits.max_velocity_mps, limits.max_acceleration_mps2});
-  if (!(parameters.counts_per_m > 0.0 && greatest * parameters.counts_per_m < 2e9)) {
-    throw ConfigError("Modbus axis: the limits do not fit into the drive's units");
+  if (!(parameters.counts_per_m > 0.0)) {
+    throw ConfigError("Modbus axis: counts_per_m must be positive");
+  }
+  // Every number that is sent to the drive as a multiple of its units is 32 bits wide.
+  constexpr double kGreatest = 2147483647.0;
+  const auto require_counts = [&](double value, const char* what) {
+    require_fits(value * parameters.counts_per_m, kGreatest, what);
+  };
+  require_counts(limits.lower_m, "the lower limit of the URDF times counts_per_m");
+  require_counts(limits.upper_m, "the upper limit of the URDF times counts_per_m");
+  require_counts(limits.max_velocity_mps, "the velocity limit of the URDF times counts_per_m");
+  require_counts(limits.max_acceleration_mps2,
+                 "the acceleration limit of the URDF times counts_per_m");
+  require_counts(parameters.homing_speed_mps, "homing_speed_mps times counts_per_m");
+  require_counts(parameters.homing_acceleration_mps2,
+                 "homing_acceleration_mps2 times counts_per_m");
+  if (parameters.watchdog_index != 0) {
+    const double greatest =
+        std::ldexp(1.0, static_cast<int>(8 * parameters.watchdog_bytes - 1)) - 1.0;
+    require_fits(parameters.watchdog_s / parameters.watchdog_unit_s, greatest,
+                 "watchdog_s in units of watchdog_unit_s");
   }
 }
 
-ModbusAxisDriver::~ModbusAxisDriver() = default;
+// A drive that is left powered would hold, or go on to, its last target.
+ModbusAxisDriver::~ModbusAxisDriver() {
+  if (!connection_ || !reading_.powered) return;
+  start_budget();
+  (void)set(kControlword, command::kQuickStop).ok();
+}
+
+void ModbusAxisDriver::start_budget(double timeouts) {
+  budget_.emplace(timeouts * parameters_.timeout_s);
+}
 
 std::int32_t ModbusAxisDriver::counts(double meters) const {
   return static_cast<std::int32_t>(std::lround(meters * parameters_.counts_per_m));
 }
 
-bool ModbusAxisDriver::powered() const {
+bool ModbusAxisDriver::operating() const {
   return decode_state(statusword_) == State::kOperationEnabled;
 }
 
@@ -115,44 +81,8 @@ void ModbusAxisDriver::lose_connection() {
   reading_.homed = false;
   reading_.state = AxisState::kFault;
   reading_.fault = DriveFault::kConnectionLost;
-  sequencer_.set_goal(Goal::kPowerOff);
-}
-
-Status ModbusAxisDriver::connect() {
-  modbus_t* context =
-      modbus_new_tcp(parameters_.address.c_str(), static_cast<int>(parameters_.port));
-  if (context == nullptr) return unavailable("the drive's address is not usable");
-  connection_ = std::make_unique<Connection>(context);
-  const auto timeout_us = static_cast<std::uint32_t>(parameters_.timeout_s * 1e6);
-  modbus_set_response_timeout(context, timeout_us / 1000000, timeout_us % 1000000);
-  if (modbus_connect(context) != 0) {
-    lose_connection();
-    return unavailable("no connection to the drive");
-  }
-  mode_ = 0;
-  controlword_ = 0;
-  if (Status status = configure(); !status) {
-    lose_connection();
-    return status;
-  }
-  return {};
-}
-
-Status ModbusAxisDriver::configure() {
-  const std::array<std::pair<Object, std::int32_t>, 5> settings{
-      {{kLowerLimit, counts(limits_.lower_m)},
-       {kUpperLimit, counts(limits_.upper_m)},
-       {kProfileVelocity, counts(limits_.max_velocity_mps)},
-       {kProfileAcceleration, counts(limits_.max_acceleration_mps2)},
-       {kProfileDeceleration, counts(limits_.max_acceleration_mps2)}}};
-  for (const auto& [object, value] : settings) {
-    if (Status status = set(object, value); !status) return status;
-  }
-  const auto modes = get(kSupportedModes);
-  if (!modes && lost_) return modes.error();
-  constexpr int kCyclicPositionBit = 7;
-  cyclic_offered_ = modes.ok() && (*modes >> kCyclicPositionBit & 1) != 0;
-  return {};
+  reading_.powered = true;  // for all that is known
+  if (!emergency_stop_) sequencer_.set_goal(Goal::kPowerOff);
 }
 
 Result<std::int32_t> ModbusAxisDriver::get(const Object& object) {
@@ -168,35 +98,10 @@ Status ModbusAxisDriver::set(const Object& object, std::int32_t value) {
 Result<std::int32_t> ModbusAxisDriver::exchange(const Telegram& request, const Object& object,
                                                 bool write) {
   if (!connection_) return unavailable("no connection to the drive");
-  modbus_t* context = connection_->context;
-  std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> answer{};
-  Telegram addressed = request;
-  addressed[0] = static_cast<std::uint8_t>(parameters_.unit);
-  if (modbus_send_raw_request(context, addressed.begin(), static_cast<int>(addressed.size())) < 0) {
-    lose_connection();
-    return unavailable("the drive does not take requests");
-  }
-  // libmodbus does not know the function's length: it reads up to the MEI type, the rest is ours.
-  const int head = modbus_receive_confirmation(context, answer.data());
-  constexpr int kMbapBytes = 6;
-  const int total = head < kMbapBytes ? 0 : kMbapBytes + (answer[4] << 8 | answer[5]);
-  int filled = head;
-  while (filled > 0 && filled < total && total <= static_cast<int>(answer.size())) {
-    pollfd waiting{modbus_get_socket(context), POLLIN, 0};
-    if (poll(&waiting, 1, static_cast<int>(std::ceil(parameters_.timeout_s * 1e3))) <= 0) break;
-    const auto got =
-        recv(waiting.fd, answer.data() + filled, static_cast<std::size_t>(total - filled), 0);
-    if (got <= 0) break;
-    filled += static_cast<int>(got);
-  }
-  if (head <= 0 || filled != total) {
-    lose_connection();
-    return unavailable("the drive does not answer");
-  }
-  const std::span<const std::uint8_t> telegram(answer.data() + kMbapBytes,
-                                               static_cast<std::size_t>(total - kMbapBytes));
-  auto value = parse_response(telegram, object, write);
-  if (!value && value.error().code == ErrorCode::kParse) lose_connection();
+  auto value = connection_->exchange(request, object, write, *budget_);
+  if (value.ok() || value.error().code == ErrorCode::kUnavailable) return value;
+  lose_connection();
+  if (value.error().code == ErrorCode::kIo) return unavailable(value.error().message);
   return value;
 }
 
@@ -230,10 +135,17 @@ Status ModbusAxisDriver::move_by_profile(double position_m) {
 }
 
 Status ModbusAxisDriver::read(Time now, Duration) {
-  if (lost_) return unavailable("the connection to the drive was lost");
   if (!connection_) {
+    if (lost_) return unavailable("the connection to the drive was lost");
     if (Status status = connect(); !status) return status;
   }
+  start_budget();
+  if (Status status = read_objects(); !status) return status;
+  interpret(now);
+  return {};
+}
+
+Status ModbusAxisDriver::read_objects() {
   const auto statusword = get(kStatusword);
   if (!statusword) return statusword.error();
   const auto position = get(kPosition);
@@ -248,57 +160,64 @@ Status ModbusAxisDriver::read(Time now, Duration) {
   statusword_ = static_cast<std::uint16_t>(*statusword);
   reading_.position_m = *position / parameters_.counts_per_m;
   reading_.velocity_mps = *velocity / parameters_.counts_per_m;
-  interpret(now);
   return {};
 }
 
 void ModbusAxisDriver::interpret(Time now) {
   reading_.stamp = now;
   const auto state = decode_state(statusword_);
-  const bool faulted = state == State::kFault || state == State::kFaultReactionActive;
-  if (faulted) {
+  reading_.powered = !state || *state == State::kOperationEnabled ||
+                     *state == State::kQuickStopActive || *state == State::kFaultReactionActive;
+  if (state == State::kFault || state == State::kFaultReactionActive) {
     homing_ = false;
     const bool following = (statusword_ & status_bit::kFollowingError) != 0;
     reading_.fault = following ? DriveFault::kFollowingError : DriveFault::kDrive;
-  } else if (!homing_failed_) {
+  } else if (!homing_failed_ && !lost_) {
     reading_.fault = DriveFault::kNone;
   }
-  if (homing_ && state == State::kOperationEnabled) {
-    const bool attained = (statusword_ & status_bit::kHomingAttained) != 0;
-    if ((statusword_ & status_bit::kHomingError) != 0) {
-      homing_ = false;
-      homing_failed_ = true;
-      reading_.fault = DriveFault::kHomingFailed;
-      sequencer_.set_goal(Goal::kPowerOff);
-    } else if (attained && (statusword_ & status_bit::kTargetReached) != 0) {
-      homing_ = false;
-      reading_.homed = true;
-    }
+  if (homing_ && state) interpret_homing(*state);
+  if (state != State::kOperationEnabled) homing_ = false;
+  if (power_off_when_standing_ && std::abs(reading_.velocity_mps) < kStanding_mps) {
+    power_off_when_standing_ = false;
+    sequencer_.set_goal(Goal::kPowerOff);
   }
-  if (emergency_stop_) {
-    reading_.state = AxisState::kEmergencyStop;
-  } else if (faulted || homing_failed_) {
-    reading_.state = AxisState::kFault;
-  } else if (state != State::kOperationEnabled) {
-    reading_.state = AxisState::kDisabled;
+  reading_.state = axis_state(state);
+}
+
+void ModbusAxisDriver::interpret_homing(State state) {
+  if (state != State::kOperationEnabled) return;
+  if ((statusword_ & status_bit::kHomingError) != 0) {
     homing_ = false;
-  } else if (!reading_.homed) {
-    reading_.state = AxisState::kHoming;
-  } else {
-    const bool moving = (statusword_ & status_bit::kTargetReached) == 0;
-    reading_.state = moving ? AxisState::kMoving : AxisState::kReady;
+    homing_failed_ = true;
+    reading_.fault = DriveFault::kHomingFailed;
+    sequencer_.set_goal(Goal::kPowerOff);
+  } else if ((statusword_ & status_bit::kHomingAttained) != 0 &&
+             (statusword_ & status_bit::kTargetReached) != 0) {
+    homing_ = false;
+    reading_.homed = true;
   }
 }
 
+AxisState ModbusAxisDriver::axis_state(std::optional<State> state) const {
+  if (emergency_stop_) return AxisState::kEmergencyStop;
+  const bool faulted = state == State::kFault || state == State::kFaultReactionActive;
+  if (lost_ || faulted || homing_failed_) return AxisState::kFault;
+  if (state != State::kOperationEnabled) return AxisState::kDisabled;
+  if (!reading_.homed) return AxisState::kHoming;
+  const bool moving = (statusword_ & status_bit::kTargetReached) == 0;
+  return moving ? AxisState::kMoving : AxisState::kReady;
+}
+
 Status ModbusAxisDriver::write(Time, Duration, const AxisCommand& command) {
-  if (lost_ || !connection_) return unavailable("no connection to the drive");
+  if (!connection_) return unavailable("no connection to the drive");
+  start_budget();
   const std::uint16_t wanted = sequencer_.next(statusword_);
   if (sequencer_.goal() == Goal::kResetFault && sequencer_.reached(statusword_)) {
     sequencer_.set_goal(Goal::kPowerOff);
   }
   constexpr std::uint16_t kStateBits = 0x008F;
-  const bool operating = powered() && wanted == command::kEnableOperation;
-  if (!operating || (controlword_ & kStateBits) != wanted) {
+  const bool goes_on = operating() && wanted == command::kEnableOperation;
+  if (!goes_on || (controlword_ & kStateBits) != wanted) {
     if (Status status = send_controlword(wanted); !status) return status;
   }
   if (command.mode == AxisCommandMode::kNone) return {};
@@ -318,7 +237,10 @@ Status ModbusAxisDriver::write(Time, Duration, const AxisCommand& command) {
   if (position_m < limits_.lower_m - kTolerance_m || position_m > limits_.upper_m + kTolerance_m) {
     return Error{ErrorCode::kOutOfRange, "the commanded position lies outside the limits"};
   }
-  if (!cyclic) return move_by_profile(position_m);
+  return cyclic ? write_cyclic(position_m) : move_by_profile(position_m);
+}
+
+Status ModbusAxisDriver::write_cyclic(double position_m) {
   if (Status status = ensure_mode(Mode::kCyclicPosition); !status) return status;
   if (controlword_ != command::kEnableOperation) {
     if (Status status = send_controlword(command::kEnableOperation); !status) return status;
@@ -330,20 +252,24 @@ Status ModbusAxisDriver::enable(Time) {
   if (reading_.state != AxisState::kDisabled || lost_) {
     return unavailable("the drive is enabled, in fault or in emergency stop");
   }
+  power_off_when_standing_ = false;
   sequencer_.set_goal(Goal::kOperate);
   return {};
 }
 
 Status ModbusAxisDriver::disable(Time) {
-  if (lost_) return unavailable("the connection to the drive was lost");
-  sequencer_.set_goal(emergency_stop_ ? Goal::kQuickStop : Goal::kPowerOff);
+  if (!connection_) return unavailable("the connection to the drive was lost");
+  // Without power a moving axis would coast.
+  power_off_when_standing_ = std::abs(reading_.velocity_mps) >= kStanding_mps;
+  sequencer_.set_goal(power_off_when_standing_ ? Goal::kQuickStop : Goal::kPowerOff);
   return {};
 }
 
 Status ModbusAxisDriver::home(Time) {
   if (lost_) return unavailable("the connection to the drive was lost");
   const bool may = reading_.state == AxisState::kHoming || reading_.state == AxisState::kReady;
-  if (!may || !powered()) return unavailable("the drive cannot home now");
+  if (!may || !operating()) return unavailable("the drive cannot home now");
+  start_budget();
   const std::array<std::pair<Object, std::int32_t>, 4> settings{
       {{kHomingMethod, static_cast<std::int32_t>(parameters_.homing_method)},
        {kHomingSearchSpeed, counts(parameters_.homing_speed_mps)},
@@ -362,22 +288,36 @@ Status ModbusAxisDriver::home(Time) {
   return {};
 }
 
-Status ModbusAxisDriver::emergency_stop(Time) {
+Status ModbusAxisDriver::emergency_stop(Time now) {
   emergency_stop_ = true;
+  power_off_when_standing_ = false;
   homing_ = false;
   reading_.state = AxisState::kEmergencyStop;
   sequencer_.set_goal(Goal::kQuickStop);
-  if (lost_ || !connection_) return unavailable("no connection to the drive");
-  return send_controlword(sequencer_.next(statusword_));
+  start_budget();
+  if (!connection_) {
+    // Each attempt may block for the budget: not in every cycle.
+    if (now < next_reconnect_) return unavailable("no connection to the drive");
+    next_reconnect_ = now + Duration::milliseconds(50);
+    auto opened = GatewayConnection::open(parameters_.address, static_cast<int>(parameters_.port),
+                                          static_cast<std::uint8_t>(parameters_.unit), *budget_);
+    if (!opened) return opened.error();
+    connection_ = std::move(*opened);
+    mode_ = 0;
+  }
+  return send_controlword(command::kQuickStop);
 }
 
 Status ModbusAxisDriver::reset(Time now) {
-  if (lost_) {
-    lost_ = false;
-    if (Status status = read(now, Duration()); !status) return status;
-  }
   emergency_stop_ = false;
   homing_failed_ = false;
+  power_off_when_standing_ = false;
+  if (lost_) {
+    // Anew, so that the drive is configured again: it may have been without power.
+    lost_ = false;
+    connection_.reset();
+    if (Status status = read(now, Duration()); !status) return status;
+  }
   const bool faulted = decode_state(statusword_) == State::kFault;
   sequencer_.set_goal(faulted ? Goal::kResetFault : Goal::kPowerOff);
   interpret(now);

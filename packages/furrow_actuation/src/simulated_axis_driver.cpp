@@ -54,6 +54,13 @@ void SimulatedAxisParameters::visit(ParameterVisitor& v) {
   v.visit({.name = "start_ready",
            .description = "powered and homed from the start, as after a warm restart"},
           start_ready);
+  v.visit({.name = "watchdog_s",
+           .unit = "s",
+           .description = "a simulated drive that is not called for longer makes a quick stop and "
+                          "removes its power; 0: it has no watchdog",
+           .min = 0.0,
+           .max = 10.0},
+          watchdog_s);
 }
 
 SimulatedAxisDriver::SimulatedAxisDriver(const MotionLimits& limits,
@@ -68,6 +75,7 @@ SimulatedAxisDriver::SimulatedAxisDriver(const MotionLimits& limits,
   reading_.position_m = parameters.start_position_m;
   powered_ = parameters.start_ready;
   reading_.homed = parameters.start_ready;
+  reading_.powered = powered_;
   reading_.state = parameters.start_ready ? AxisState::kReady : AxisState::kDisabled;
 }
 
@@ -89,34 +97,48 @@ void SimulatedAxisDriver::simulate_to(Time now) {
     profile_start_ = now;
   }
   const Duration step = Duration::milliseconds(1);
-  while (simulated_to_ < now) {
-    const Time next = std::min(now, simulated_to_ + step);
-    if (mode_ == Setpoint::kCyclic && next > cyclic_end_ && cyclic_to_.velocity_mps != 0.0) {
-      // The stream of setpoints has dried up: the drive stops by itself.
-      profile_ = quick_stop(limits_, cyclic_to_);
-      profile_start_ = cyclic_end_;
-      mode_ = Setpoint::kProfile;
-    }
-    const double h = (next - simulated_to_).to_seconds();
-    const MotionState from = setpoint_;
-    setpoint_ = setpoint_at(next);
-    if (jammed_) {
-      reading_.velocity_mps = 0.0;
-    } else if (parameters_.lag_s <= 0.0) {
-      reading_.position_m = setpoint_.position_m;
-      reading_.velocity_mps = setpoint_.velocity_mps;
-    } else {
-      // The exact answer of a first-order lag to a setpoint that is linear over the step.
-      const double slope = (setpoint_.position_m - from.position_m) / h;
-      const double steady_behind = slope * parameters_.lag_s;
-      const double behind = from.position_m - reading_.position_m - steady_behind;
-      reading_.position_m =
-          setpoint_.position_m - steady_behind - behind * std::exp(-h / parameters_.lag_s);
-      reading_.velocity_mps = (setpoint_.position_m - reading_.position_m) / parameters_.lag_s;
-    }
-    simulated_to_ = next;
-  }
+  while (simulated_to_ < now) simulate_step(std::min(now, simulated_to_ + step));
   reading_.following_error_m = setpoint_.position_m - reading_.position_m;
+}
+
+void SimulatedAxisDriver::simulate_step(Time next) {
+  if (mode_ == Setpoint::kCyclic && next > cyclic_end_ && cyclic_to_.velocity_mps != 0.0) {
+    // The stream of setpoints has dried up: the drive stops by itself.
+    profile_ = quick_stop(limits_, cyclic_to_);
+    profile_start_ = cyclic_end_;
+    mode_ = Setpoint::kProfile;
+  }
+  watch_contact(next);
+  const MotionState from = setpoint_;
+  setpoint_ = setpoint_at(next);
+  follow_setpoint(from, (next - simulated_to_).to_seconds());
+  simulated_to_ = next;
+  const bool stands = setpoint_.velocity_mps == 0.0;
+  if (powered_ || stands) reading_.powered = powered_;
+}
+
+void SimulatedAxisDriver::watch_contact(Time next) {
+  if (parameters_.watchdog_s <= 0.0 || !powered_ || !last_contact_) return;
+  if ((next - *last_contact_).to_seconds() <= parameters_.watchdog_s) return;
+  fail(next, DriveFault::kConnectionLost);
+  powered_ = false;
+}
+
+void SimulatedAxisDriver::follow_setpoint(const MotionState& from, double h) {
+  if (jammed_) {
+    reading_.velocity_mps = 0.0;
+  } else if (parameters_.lag_s <= 0.0) {
+    reading_.position_m = setpoint_.position_m;
+    reading_.velocity_mps = setpoint_.velocity_mps;
+  } else {
+    // The exact answer of a first-order lag to a setpoint that is linear over the step.
+    const double slope = (setpoint_.position_m - from.position_m) / h;
+    const double steady_behind = slope * parameters_.lag_s;
+    const double behind = from.position_m - reading_.position_m - steady_behind;
+    reading_.position_m =
+        setpoint_.position_m - steady_behind - behind * std::exp(-h / parameters_.lag_s);
+    reading_.velocity_mps = (setpoint_.position_m - reading_.position_m) / parameters_.lag_s;
+  }
 }
 
 void SimulatedAxisDriver::stop_from(Time now) {
@@ -141,6 +163,7 @@ Status SimulatedAxisDriver::read(Time now, Duration) {
   simulate_to(now);
   if (!connected_) return refuse_unless_connected();
   reading_.stamp = now;
+  last_contact_ = now;
   const bool standing = std::abs(setpoint_.velocity_mps) < 1e-9 &&
                         std::abs(reading_.following_error_m) < kInPosition_m;
   if (reading_.state == AxisState::kHoming && mode_ == Setpoint::kHoming) {
@@ -188,6 +211,10 @@ Status SimulatedAxisDriver::write(Time now, Duration period, const AxisCommand& 
     mode_ = Setpoint::kProfile;
     return {};
   }
+  return start_cyclic(now, period, command);
+}
+
+Status SimulatedAxisDriver::start_cyclic(Time now, Duration period, const AxisCommand& command) {
   const double period_s = period.to_seconds();
   if (!(period_s > 0.0)) return Error{ErrorCode::kInvalidArgument, "the period is not positive"};
   const double speed = std::abs(command.position_m - setpoint_.position_m) / period_s;
@@ -210,13 +237,14 @@ Status SimulatedAxisDriver::enable(Time) {
     return unavailable("the simulated drive is enabled, faulted or in emergency stop");
   }
   powered_ = true;
+  reading_.powered = true;
   reading_.state = reading_.homed ? AxisState::kReady : AxisState::kHoming;
   return {};
 }
 
 Status SimulatedAxisDriver::disable(Time now) {
   if (Status status = refuse_unless_connected(); !status) return status;
-  stop_from(now);
+  stop_from(now);  // the power goes off once it stands
   powered_ = false;
   if (reading_.state != AxisState::kFault && reading_.state != AxisState::kEmergencyStop) {
     reading_.state = AxisState::kDisabled;

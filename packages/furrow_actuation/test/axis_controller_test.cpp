@@ -7,66 +7,17 @@
 
 #include "allocation_counter.hpp"
 #include "furrow_core/error.hpp"
-#include "rig.hpp"
+#include "trip.hpp"
 
 namespace furrow::actuation {
 namespace {
 
 using testing::paper_axis;
+using testing::ready;
 using testing::Rig;
+using testing::steady;
 using testing::stop_at;
-
-Twist2 steady(double) {
-  return {0.5, 0.0, 0.0};
-}
-
-SimulatedAxisParameters ready() {
-  SimulatedAxisParameters parameters;
-  parameters.start_ready = true;
-  return parameters;
-}
-
-/// One axis at 0.5 m/s on a plan that is sent again at 50 Hz.
-class Trip {
- public:
-  explicit Trip(const AxisControllerParameters& parameters = {}, Rig::Speed speed = steady,
-                const SimulatedAxisParameters& drive = ready())
-      : rig(1, parameters, {}, {}, drive, std::move(speed)) {}
-
-  void run(double seconds) {
-    for (double t = 0.0; t < seconds; t += 0.002) {
-      if (send_plan) send();
-      rig.step();
-      opened_now = opened_now || axis().output.valve_open;
-    }
-  }
-  void send() {
-    auto stops = plan;
-    for (auto& stop : stops) {
-      if (fresh) stop.observed = rig.now();
-    }
-    ASSERT_TRUE(axis().controller.set_plan(rig.now(), stops).ok());
-  }
-  Rig::Axis& axis() { return rig.axis(0); }
-  [[nodiscard]] int count(ControllerEventKind kind) {
-    int n = 0;
-    for (const auto& event : axis().events) n += event.kind == kind ? 1 : 0;
-    return n;
-  }
-  [[nodiscard]] ControllerEvent last(ControllerEventKind kind) {
-    ControllerEvent found;
-    for (const auto& event : axis().events) {
-      if (event.kind == kind) found = event;
-    }
-    return found;
-  }
-
-  Rig rig;
-  std::vector<PlannedStop> plan;
-  bool send_plan = true;
-  bool fresh = true;
-  bool opened_now = false;
-};
+using testing::Trip;
 
 TEST(AxisController, SpraysItsStopsOnceAndReportsThem) {
   Trip trip;
@@ -105,10 +56,10 @@ TEST(AxisController, GoesOnFromTheDriveAfterCyclesWereLeftOut) {
     ASSERT_GT(trip.axis().driver.reading().velocity_mps, 1.0);
     trip.rig.stall(cycles);
     trip.run(0.2);
-    trip.axis().controller.reset();  // of what has become too old meanwhile
+    trip.reset();  // of what has become too old meanwhile
     trip.run(2.0);
     EXPECT_EQ(trip.axis().driver.reading().fault, DriveFault::kNone) << cycles;
-    EXPECT_NE(trip.last(ControllerEventKind::kMadeSafe).cause, SafetyCause::kFollowingError);
+    EXPECT_NE(trip.last(ControllerEventKind::kSafeState).cause, SafetyCause::kFollowingError);
     EXPECT_EQ(trip.count(ControllerEventKind::kSprayOpened), 1) << cycles;
     EXPECT_LT((trip.last(ControllerEventKind::kSprayClosed).p_F - Eigen::Vector2d(0.8, 0.5)).norm(),
               2e-3);
@@ -196,8 +147,7 @@ TEST(AxisController, SkipsForEachReason) {
   {
     Trip trip;
     trip.plan = {stop_at(1, {0.6, 0.2}, {}), stop_at(2, {0.8, 0.2}, {})};
-    const std::vector<ProtectedPlant> crops{{7, {0.62, 0.21}}};
-    trip.axis().controller.set_protected(crops);
+    trip.rig.crops = {{7, {0.62, 0.21}}};
     trip.run(1.5);
     EXPECT_EQ(trip.count(ControllerEventKind::kSprayOpened), 1);
     EXPECT_EQ(trip.last(ControllerEventKind::kStopSkipped).reason, SkipReason::kProtectedCrop);
@@ -212,9 +162,8 @@ TEST(AxisController, ACropSeenWhileSprayingClosesTheValve) {
   trip.plan = {stop_at(1, {0.6, 0.2}, {})};
   for (int i = 0; i < 2000 && !trip.axis().output.valve_open; ++i) trip.run(0.002);
   ASSERT_TRUE(trip.axis().output.valve_open);
-  const std::vector<ProtectedPlant> crops{{7, {0.6, 0.21}}};
-  trip.axis().controller.set_protected(crops);
-  trip.run(0.002);
+  trip.rig.crops = {{7, {0.6, 0.21}}};
+  trip.run(0.010);  // the next tracks
   EXPECT_FALSE(trip.axis().output.valve_open);
   EXPECT_EQ(trip.last(ControllerEventKind::kSprayClosed).reason, SkipReason::kProtectedCrop);
 }
@@ -250,160 +199,20 @@ TEST(AxisController, DryRunMovesAndReportsButOpensNothing) {
   EXPECT_NEAR(trip.rig.axis(0).driver.reading().position_m, 0.3, 1e-3);
 }
 
-struct CauseCase {
-  const char* name;
-  SafetyCause cause;
-  double within_s;
-  std::function<void(Trip&)> inject;
-  std::function<void(Trip&)> mend;
-};
-
-class Causes : public ::testing::TestWithParam<CauseCase> {};
-
-TEST_P(Causes, ShutsTheValveStopsTheAxisAndLatches) {
-  const CauseCase& c = GetParam();
-  AxisControllerParameters parameters;
-  parameters.dwell_s = 0.5;  // the cause strikes while the valve is open
-  parameters.plan_deadline_s = 0.1;
-  parameters.odometry_deadline_s = 0.05;
-  Trip trip(parameters, [](double) { return Twist2{0.1, 0.0, 0.0}; });
-  trip.plan = {stop_at(1, {0.35, 0.3}, {}), stop_at(2, {0.45, -0.6}, {})};
-  for (int i = 0; i < 5000 && !trip.axis().output.valve_open; ++i) trip.run(0.002);
-  ASSERT_TRUE(trip.axis().output.valve_open);
-  c.inject(trip);
-  const Time struck = trip.rig.now();
-  for (int i = 0; i < 1000 && trip.axis().output.mode != ControllerMode::kSafe; ++i)
-    trip.run(0.002);
-  EXPECT_EQ(trip.axis().output.mode, ControllerMode::kSafe);
-  EXPECT_EQ(trip.axis().output.cause, c.cause);
-  EXPECT_FALSE(trip.axis().output.valve_open);
-  EXPECT_LE((trip.axis().output.cause_time - struck).to_seconds(), c.within_s + 1e-9);
-  EXPECT_EQ(trip.last(ControllerEventKind::kMadeSafe).cause, c.cause);
-  EXPECT_EQ(trip.last(ControllerEventKind::kSprayClosed).reason, SkipReason::kFault);
-  c.mend(trip);
-  trip.opened_now = false;
-  trip.run(0.5);
-  EXPECT_EQ(trip.axis().output.mode, ControllerMode::kSafe);  // mended, and yet latched
-  EXPECT_FALSE(trip.opened_now);
-  trip.axis().controller.reset();
-  trip.run(0.1);
-  EXPECT_EQ(trip.axis().output.mode, ControllerMode::kRunning);
-  EXPECT_EQ(trip.count(ControllerEventKind::kReset), 1);
-}
-
-void restart_drive(Trip& trip) {
-  auto& driver = trip.axis().driver;
-  driver.clear_faults();
-  ASSERT_TRUE(driver.reset(trip.rig.now()).ok());
-  ASSERT_TRUE(driver.enable(trip.rig.now()).ok());
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    All, Causes,
-    ::testing::Values(
-        CauseCase{"EmergencyStop", SafetyCause::kEmergencyStop, 0.002,
-                  [](Trip& r) { r.axis().controller.set_emergency_stop(true); },
-                  [](Trip& r) { r.axis().controller.set_emergency_stop(false); }},
-        CauseCase{"EmergencyStopOfTheDrive", SafetyCause::kEmergencyStop, 0.002,
-                  [](Trip& r) { ASSERT_TRUE(r.axis().driver.emergency_stop(r.rig.now()).ok()); },
-                  restart_drive},
-        CauseCase{"PeerLost", SafetyCause::kPeerLost, 0.002,
-                  [](Trip& r) { r.axis().controller.set_peer_lost(true); },
-                  [](Trip& r) { r.axis().controller.set_peer_lost(false); }},
-        CauseCase{"PlanStale", SafetyCause::kPlanStale, 0.104, [](Trip& r) { r.send_plan = false; },
-                  [](Trip& r) { r.send_plan = true; }},
-        CauseCase{"OdometryStale", SafetyCause::kOdometryStale, 0.054,
-                  [](Trip& r) { r.rig.send_odometry = false; },
-                  [](Trip& r) { r.rig.send_odometry = true; }},
-        CauseCase{"OdometryInvalid", SafetyCause::kOdometryInvalid, 0.002,
-                  [](Trip& r) {
-                    BaseState bad = r.rig.base();
-                    bad.X_FB.y_m = std::numeric_limits<double>::quiet_NaN();
-                    r.rig.send_odometry = false;
-                    r.axis().controller.set_odometry(bad);
-                  },
-                  [](Trip& r) { r.rig.send_odometry = true; }},
-        CauseCase{"ReadingStale", SafetyCause::kReadingStale, 0.024,
-                  [](Trip& r) { r.axis().driver.set_connected(r.rig.now(), false); },
-                  [](Trip& r) {
-                    r.axis().driver.set_connected(r.rig.now(), true);
-                    restart_drive(r);
-                  }},
-        CauseCase{"DriveFault", SafetyCause::kDriveFault, 0.002,
-                  [](Trip& r) { r.axis().driver.inject(r.rig.now(), DriveFault::kDrive); },
-                  restart_drive},
-        CauseCase{"PowerLost", SafetyCause::kDriveFault, 0.002,
-                  [](Trip& r) { ASSERT_TRUE(r.axis().driver.disable(r.rig.now()).ok()); },
-                  [](Trip& r) { ASSERT_TRUE(r.axis().driver.enable(r.rig.now()).ok()); }},
-        CauseCase{"FollowingError", SafetyCause::kFollowingError, 0.002,
-                  [](Trip& r) { r.axis().driver.inject(r.rig.now(), DriveFault::kFollowingError); },
-                  restart_drive},
-        CauseCase{"ValveFault", SafetyCause::kValveFault, 0.002,
-                  [](Trip& r) { r.axis().controller.set_valve_fault(true); },
-                  [](Trip& r) { r.axis().controller.set_valve_fault(false); }},
-        CauseCase{"ProtectionOverflow", SafetyCause::kProtectionOverflow, 0.002,
-                  [](Trip& r) {
-                    const std::vector<ProtectedPlant> many(kMaxProtectedPlants + 1);
-                    r.axis().controller.set_protected(many);
-                  },
-                  [](Trip& r) { r.axis().controller.set_protected({}); }}),
-    [](const auto& tested) { return tested.param.name; });
-
-TEST(AxisController, MeasuredPositionAndFollowingErrorAreWatched) {
-  const auto cause_of = [](double position_m, double following_error_m) {
-    AxisController controller(paper_axis(0), {}, {});
-    SafetyCause cause = SafetyCause::kNone;
-    for (int i = 0; i < 50 && cause == SafetyCause::kNone; ++i) {
-      const Time now = Time::from_seconds(1.0 + 0.002 * i);
-      const bool bad = i > 10;
-      controller.set_reading({now, AxisState::kReady, DriveFault::kNone, true,
-                              bad ? position_m : 0.0, 0.0, bad ? following_error_m : 0.0});
-      controller.set_odometry({now, {}, {0.5, 0.0, 0.0}});
-      EXPECT_TRUE(controller.set_plan(now, {}).ok());
-      cause = controller.update(now, Rig::kPeriod).cause;
-    }
-    return cause;
-  };
-  EXPECT_EQ(cause_of(0.1, 0.01), SafetyCause::kNone);
-  EXPECT_EQ(cause_of(0.70, 0.0), SafetyCause::kPositionLimit);
-  EXPECT_EQ(cause_of(std::nan(""), 0.0), SafetyCause::kPositionLimit);
-  EXPECT_EQ(cause_of(0.1, 0.04), SafetyCause::kFollowingError);
-  EXPECT_EQ(cause_of(0.1, std::nan("")), SafetyCause::kFollowingError);
-}
-
-TEST(AxisController, ACauseStopsAMovingAxisWithinItsLimits) {
-  Trip trip;
-  trip.plan = {stop_at(1, {0.8, 0.69}, {})};
-  trip.run(0.11);
-  ASSERT_GT(trip.axis().driver.reading().velocity_mps, 1.0);
-  trip.axis().controller.set_emergency_stop(true);
-  MotionState last = trip.axis().controller.setpoint();
-  for (int i = 0; i < 200; ++i) {
-    trip.run(0.002);
-    const MotionState s = trip.axis().controller.setpoint();
-    ASSERT_LE(std::abs(s.velocity_mps - last.velocity_mps), 50.0 * 0.002 + 1e-6);
-    ASSERT_LE(std::abs(s.acceleration_mps2 - last.acceleration_mps2), 2000.0 * 0.002 + 1e-6);
-    last = s;
-  }
-  EXPECT_EQ(last.velocity_mps, 0.0);
-  EXPECT_LT(last.position_m, 0.695);
-  EXPECT_NEAR(trip.axis().driver.reading().position_m, last.position_m, 1e-6);
-}
-
 TEST(AxisController, WaitsUntilEverythingIsThere) {
   SimulatedAxisParameters drive;
   Trip trip({}, steady, drive);
   trip.plan = {stop_at(1, {0.5, 0.2}, {}), stop_at(2, {2.0, 0.2}, {})};
+  trip.axis().driver.set_connected({}, false);  // the drive is not there yet
   trip.run(1.0);
   EXPECT_EQ(trip.axis().output.mode, ControllerMode::kWaiting);
   EXPECT_EQ(trip.last(ControllerEventKind::kStopSkipped).reason, SkipReason::kFault);
   EXPECT_EQ(trip.count(ControllerEventKind::kStopSkipped), 1);
-  ASSERT_TRUE(trip.axis().driver.enable(trip.rig.now()).ok());
-  ASSERT_TRUE(trip.axis().driver.home(trip.rig.now()).ok());
+  trip.axis().driver.set_connected(trip.rig.now(), true);
   trip.run(3.0);
   EXPECT_EQ(trip.axis().output.mode, ControllerMode::kRunning);
   EXPECT_EQ(trip.count(ControllerEventKind::kSprayOpened), 1);
-  EXPECT_EQ(trip.count(ControllerEventKind::kMadeSafe), 0);
+  EXPECT_EQ(trip.count(ControllerEventKind::kSafeState), 0);
 }
 
 TEST(AxisController, RefusesBadPlansAndConfiguration) {
@@ -412,8 +221,8 @@ TEST(AxisController, RefusesBadPlansAndConfiguration) {
   EXPECT_EQ(controller.set_plan({}, many).error().code, ErrorCode::kOutOfRange);
   const std::vector<PlannedStop> bad{stop_at(1, {std::nan(""), 0.0}, {})};
   EXPECT_EQ(controller.set_plan({}, bad).error().code, ErrorCode::kInvalidArgument);
-  const std::vector<PlannedStop> nobody(1);
-  EXPECT_EQ(controller.set_plan({}, nobody).error().code, ErrorCode::kInvalidArgument);
+  const std::vector<PlannedStop> without_targets(1);
+  EXPECT_EQ(controller.set_plan({}, without_targets).error().code, ErrorCode::kInvalidArgument);
   auto axis = paper_axis(0);
   axis.max_jerk_mps3 = 0.0;
   EXPECT_THROW(AxisController(axis, {}, {}), ConfigError);
@@ -443,18 +252,20 @@ TEST(AxisController, AllocatesNothingPerCycle) {
     const double x = 0.5 * now.to_seconds();
     const bool standing = i > 8000 && i < 8500;
     ASSERT_TRUE(driver.read(now, Rig::kPeriod).ok());
-    controller.set_reading(driver.reading());
+    controller.set_reading(now, driver.reading());
+    controller.safety().heartbeat_came(now);
     controller.set_odometry({now, {x, 0.0, 0.0}, {standing ? 0.0 : 0.5, 0.0, 0.02}});
     for (auto& stop : plan) stop.observed = now;
     ASSERT_TRUE(controller.set_plan(now, plan).ok());
-    controller.set_protected(crops);
-    if (i == 9000) controller.set_emergency_stop(true);
+    controller.set_protected(now, crops);
+    if (i == 9000) controller.safety().set_emergency_stop(true);
     const ControllerOutput output = controller.update(now, Rig::kPeriod);
     for (const auto& event : output.events) {
       opened += event.kind == ControllerEventKind::kSprayOpened ? 1 : 0;
       skipped += event.kind == ControllerEventKind::kStopSkipped ? 1 : 0;
     }
     ASSERT_TRUE(valve.write(now, output.valve_open).ok());
+    controller.safety().valve_written(now, output.valve_open, true);
     (void)valve.take_changes(now);
     ASSERT_TRUE(driver.write(now, Rig::kPeriod, output.axis).ok());
   }

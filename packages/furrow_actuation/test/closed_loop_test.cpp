@@ -38,13 +38,11 @@ struct Scenario {
   double spacing_m = 0.35;
 };
 
-Outcome drive(const Scenario& scenario, std::uint64_t seed) {
-  SimulatedAxisParameters drive_parameters = scenario.drive;
-  drive_parameters.start_ready = true;
-  Rig rig(4, scenario.parameters, scenario.calibration, scenario.valve, drive_parameters, winding);
+using StopsOfAxes = std::vector<std::vector<PlannedStop>>;
+
+StopsOfAxes draw_stops(const Scenario& scenario, std::uint64_t seed) {
   Random random(seed, "targets");
-  std::vector<std::vector<PlannedStop>> stops(4);
-  Outcome outcome;
+  StopsOfAxes stops(4);
   for (int i = 0; i < 4; ++i) {
     double x = 0.6;
     for (int k = 0; k < 60; ++k) {
@@ -53,25 +51,27 @@ Outcome drive(const Scenario& scenario, std::uint64_t seed) {
       auto stop = stop_at(1000 * i + k, {x, y}, Time(), Time::from_seconds(x));
       stop.fire_while_moving = scenario.fire_while_moving && k % 2 == 0;
       stops[static_cast<std::size_t>(i)].push_back(stop);
-      ++outcome.planned;
     }
   }
-  const double end_m = 0.6 + 70 * scenario.spacing_m;
-  for (int cycle = 0; rig.base().X_FB.x_m < end_m && cycle < 60000; ++cycle) {
-    if (cycle % 100 == 0) {  // a plan at 5 Hz, of what lies ahead
-      for (int i = 0; i < 4; ++i) {
-        std::vector<PlannedStop> ahead;
-        for (auto stop : stops[static_cast<std::size_t>(i)]) {
-          const double distance = stop.p_F.x() - rig.base().X_FB.x_m;
-          if (distance < -0.5 || distance > 1.5) continue;
-          stop.observed = rig.now();
-          ahead.push_back(stop);
-        }
-        EXPECT_TRUE(rig.axis(i).controller.set_plan(rig.now(), ahead).ok());
-      }
+  return stops;
+}
+
+/// A plan of what lies ahead, to every axis.
+void send_plans(Rig& rig, const StopsOfAxes& stops) {
+  for (int i = 0; i < rig.size(); ++i) {
+    std::vector<PlannedStop> ahead;
+    for (auto stop : stops[static_cast<std::size_t>(i)]) {
+      const double distance = stop.p_F.x() - rig.base().X_FB.x_m;
+      if (distance < -0.5 || distance > 1.5) continue;
+      stop.observed = rig.now();
+      ahead.push_back(stop);
     }
-    rig.step();
+    EXPECT_TRUE(rig.axis(i).controller.set_plan(rig.now(), ahead).ok());
   }
+}
+
+/// Each spray against the nearest stop of its axis.
+void score_placement(const Rig& rig, const StopsOfAxes& stops, Outcome& outcome) {
   std::vector<double> errors_mm;
   for (const Landed& landed : rig.landed()) {
     double best = 1e9;
@@ -86,6 +86,28 @@ Outcome drive(const Scenario& scenario, std::uint64_t seed) {
     errors_mm.push_back(1e3 * best);
     outcome.mean_along_mm += 1e3 * along;
   }
+  outcome.sprayed = static_cast<int>(errors_mm.size());
+  EXPECT_FALSE(errors_mm.empty());
+  if (errors_mm.empty()) return;
+  outcome.mean_along_mm /= outcome.sprayed;
+  std::sort(errors_mm.begin(), errors_mm.end());
+  outcome.p50_mm = errors_mm[errors_mm.size() / 2];
+  outcome.p95_mm = errors_mm[errors_mm.size() * 95 / 100];
+  outcome.max_mm = errors_mm.back();
+}
+
+Outcome drive(const Scenario& scenario, std::uint64_t seed) {
+  SimulatedAxisParameters drive_parameters = scenario.drive;
+  drive_parameters.start_ready = true;
+  Rig rig(4, scenario.parameters, scenario.calibration, scenario.valve, drive_parameters, winding);
+  const StopsOfAxes stops = draw_stops(scenario, seed);
+  Outcome outcome;
+  for (const auto& of_axis : stops) outcome.planned += static_cast<int>(of_axis.size());
+  const double end_m = 0.6 + 70 * scenario.spacing_m;
+  for (int cycle = 0; rig.base().X_FB.x_m < end_m && cycle < 60000; ++cycle) {
+    if (cycle % 100 == 0) send_plans(rig, stops);  // at 5 Hz
+    rig.step();
+  }
   for (int i = 0; i < rig.size(); ++i) {
     for (const auto& event : rig.axis(i).events) {
       if (event.kind != ControllerEventKind::kStopSkipped) continue;
@@ -93,15 +115,8 @@ Outcome drive(const Scenario& scenario, std::uint64_t seed) {
       if (event.reason == SkipReason::kLate) ++outcome.late;
     }
   }
-  outcome.sprayed = static_cast<int>(errors_mm.size());
-  EXPECT_FALSE(errors_mm.empty());
-  if (errors_mm.empty()) return outcome;
+  score_placement(rig, stops, outcome);
   EXPECT_EQ(outcome.sprayed + outcome.skipped, outcome.planned);
-  outcome.mean_along_mm /= outcome.sprayed;
-  std::sort(errors_mm.begin(), errors_mm.end());
-  outcome.p50_mm = errors_mm[errors_mm.size() / 2];
-  outcome.p95_mm = errors_mm[errors_mm.size() * 95 / 100];
-  outcome.max_mm = errors_mm.back();
   ::testing::Test::RecordProperty("p95_mm", std::to_string(outcome.p95_mm));
   ::testing::Test::RecordProperty("max_mm", std::to_string(outcome.max_mm));
   return outcome;

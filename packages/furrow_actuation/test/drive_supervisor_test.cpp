@@ -69,7 +69,7 @@ TEST(DriveSupervisor, AnEmergencyStopStaysUntilReset) {
   EXPECT_EQ(bench.state(), AxisState::kReady);
 }
 
-TEST(DriveSupervisor, SomebodySwitchedThePowerOffAndItStaysOff) {
+TEST(DriveSupervisor, PowerThatWasSwitchedOffStaysOff) {
   Bench bench;
   bench.run(2.0);
   ASSERT_TRUE(bench.driver.disable(bench.now).ok());

@@ -221,7 +221,9 @@ TEST(ModbusAxis, EmergencyStopStopsAndLatches) {
   EXPECT_EQ(wire.driver().reading().state, AxisState::kEmergencyStop);
   EXPECT_EQ(wire.driver().reading().velocity_mps, 0.0);
   EXPECT_LT(wire.driver().reading().position_m, 0.5);
-  wire.at_drive([](SimulatedDrive& d) { EXPECT_EQ(d.phase(), Phase::kQuickStop); });
+  // By its option code it removes its power once it stands.
+  wire.at_drive([](SimulatedDrive& d) { EXPECT_EQ(d.phase(), Phase::kLocked); });
+  EXPECT_FALSE(wire.driver().reading().powered);
   EXPECT_FALSE(wire.driver().enable(wire.now()).ok());
   ASSERT_TRUE(wire.driver().reset(wire.now()).ok());
   wire.run_until(AxisState::kDisabled);
@@ -246,7 +248,134 @@ TEST(ModbusAxis, JamAndMissingReferenceAreReported) {
   EXPECT_EQ(wire.driver().reading().fault, DriveFault::kHomingFailed);
 }
 
-TEST(ModbusAxis, NobodyThereIsAnError) {
+TEST(ModbusAxis, AQuickStopReachesADriveWhoseConnectionWasLost) {
+  Wire wire;
+  wire.make_ready();
+  wire.cycle({AxisCommandMode::kProfile, 0.6, 0.0});
+  for (int i = 0; i < 20; ++i) wire.cycle();
+  wire.cut(true);
+  EXPECT_FALSE(wire.cycle());
+  wire.cut(false);
+  wire.at_drive([](SimulatedDrive& d) { ASSERT_EQ(d.phase(), Phase::kOperating); });
+  ASSERT_TRUE(wire.driver().emergency_stop(wire.now()).ok());
+  wire.at_drive([](SimulatedDrive& d) { EXPECT_EQ(d.phase(), Phase::kQuickStop); });
+  for (int i = 0; i < 50; ++i) EXPECT_TRUE(wire.cycle());
+  EXPECT_FALSE(wire.driver().reading().powered);
+  EXPECT_EQ(wire.driver().reading().state, AxisState::kEmergencyStop);
+  ASSERT_TRUE(wire.driver().reset(wire.now()).ok());
+  wire.run_until(AxisState::kDisabled);
+  EXPECT_FALSE(wire.driver().reading().homed);
+}
+
+TEST(ModbusAxis, DisablingAMovingAxisStopsItFirst) {
+  Wire wire;
+  wire.make_ready();
+  wire.cycle({AxisCommandMode::kProfile, 0.6, 0.0});
+  for (int i = 0; i < 20; ++i) wire.cycle();
+  ASSERT_TRUE(wire.driver().disable(wire.now()).ok());
+  wire.cycle();
+  wire.at_drive([](SimulatedDrive& d) { EXPECT_EQ(d.phase(), Phase::kQuickStop); });
+  wire.run_until(AxisState::kDisabled);
+  for (int i = 0; i < 20; ++i) wire.cycle();
+  wire.at_drive([](SimulatedDrive& d) { EXPECT_EQ(d.phase(), Phase::kLocked); });
+}
+
+TEST(ModbusAxis, ADriverThatGoesLeavesADriveThatStopsAndRemovesItsPower) {
+  SimulatedDrive drive;
+  DriveServer server(drive, "127.0.0.1", 0);
+  std::thread thread([&] {
+    server.serve([&] {
+      drive.advance(1e-3);
+      return true;
+    });
+  });
+  {
+    ModbusAxisDriver driver(kLimits, Wire::parameters(server.port()));
+    Time now = Time::from_seconds(1.0);
+    const auto cycle = [&] {
+      now += Duration::milliseconds(10);
+      (void)driver.read(now, Duration::milliseconds(10)).ok();
+      (void)driver.write(now, Duration::milliseconds(10), {}).ok();
+    };
+    cycle();
+    ASSERT_TRUE(driver.enable(now).ok());
+    for (int i = 0; i < 100 && driver.reading().state != AxisState::kHoming; ++i) cycle();
+    ASSERT_EQ(driver.reading().state, AxisState::kHoming);
+  }
+  server.stop();
+  thread.join();
+  drive.advance(1.0);
+  EXPECT_EQ(drive.phase(), Phase::kLocked);
+}
+
+TEST(ModbusAxis, ConfiguresAndChecksTheDrivesOwnProtection) {
+  {
+    Wire wire;
+    wire.cycle();
+    EXPECT_EQ(wire.driver().unconfirmed(), "drive: connection watchdog (watchdog_index is 0)");
+  }
+  ModbusAxisParameters watched;
+  watched.watchdog_index = 0x2010;
+  watched.watchdog_s = 0.1;
+  {
+    Wire wire(watched);
+    wire.cycle();
+    EXPECT_EQ(wire.driver().unconfirmed(), "");
+    wire.at_drive([](SimulatedDrive& d) {
+      EXPECT_EQ(d.read(0x605A, 0), 2);
+      EXPECT_EQ(d.read(0x605E, 0), 2);
+      EXPECT_EQ(d.read(0x6007, 0), 3);
+      EXPECT_EQ(d.read(0x6085, 0), 1000000);
+      EXPECT_EQ(d.read(0x2010, 0), 100);
+    });
+  }
+  Wire wire(watched);
+  wire.at_drive([](SimulatedDrive& d) {
+    d.remove_object(0x6007);
+    d.remove_object(0x2010);
+  });
+  wire.cycle();
+  EXPECT_EQ(wire.driver().unconfirmed(),
+            "drive: reaction to a lost connection (6007h), connection watchdog");
+}
+
+TEST(ModbusAxis, AnOperatingDriveThatHearsNothingStopsAndRemovesItsPower) {
+  ModbusAxisParameters watched;
+  watched.watchdog_index = 0x2010;
+  Wire wire(watched);
+  wire.make_ready();
+  wire.cycle({AxisCommandMode::kProfile, 0.6, 0.0});
+  for (int i = 0; i < 20; ++i) wire.cycle();
+  wire.at_drive([](SimulatedDrive& d) {
+    ASSERT_EQ(d.phase(), Phase::kOperating);
+    d.advance(0.099);
+    EXPECT_EQ(d.phase(), Phase::kOperating);
+    d.advance(0.005);
+    EXPECT_EQ(d.phase(), Phase::kQuickStop);
+    d.advance(0.5);
+    EXPECT_EQ(d.phase(), Phase::kLocked);
+    EXPECT_EQ(d.velocity(), 0.0);
+  });
+}
+
+TEST(ModbusAxis, NumbersThatDoNotFitIntoTheDrivesUnitsAreConfigurationErrors) {
+  ModbusAxisParameters fine;
+  fine.counts_per_m = 1e8;
+  EXPECT_NO_THROW(ModbusAxisDriver(kLimits, fine));
+  ModbusAxisParameters homing = fine;
+  homing.homing_acceleration_mps2 = 30.0;  // 3e9 counts/s2: more than 32 bits hold
+  EXPECT_THROW(ModbusAxisDriver(kLimits, homing), ConfigError);
+  homing = fine;
+  homing.homing_speed_mps = 30.0;
+  EXPECT_THROW(ModbusAxisDriver(kLimits, homing), ConfigError);
+  ModbusAxisParameters watchdog;
+  watchdog.watchdog_index = 0x2010;
+  watchdog.watchdog_bytes = 1;
+  watchdog.watchdog_s = 1.0;  // 1000 ms in one byte
+  EXPECT_THROW(ModbusAxisDriver(kLimits, watchdog), ConfigError);
+}
+
+TEST(ModbusAxis, AnAbsentDriveIsAnError) {
   SimulatedDrive drive;
   int port = 0;
   { port = DriveServer(drive, "127.0.0.1", 0).port(); }

@@ -1,84 +1,17 @@
 #include "furrow_actuation/modbus_coil_valve.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <modbus.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <array>
-#include <atomic>
+#include <chrono>
 #include <thread>
 
+#include "../simulator/output_module.hpp"
 #include "furrow_core/error.hpp"
 
 namespace furrow::actuation {
 namespace {
 
-/// An output module with eight coils on the loopback, by libmodbus's own server.
-class OutputModule {
- public:
-  OutputModule() {
-    context_ = modbus_new_tcp("127.0.0.1", 0);
-    socket_ = modbus_tcp_listen(context_, 1);
-    sockaddr_in bound{};
-    socklen_t size = sizeof(bound);
-    getsockname(socket_, reinterpret_cast<sockaddr*>(&bound), &size);
-    port_ = ntohs(bound.sin_port);
-    mapping_ = modbus_mapping_new(8, 0, 0, 0);
-    thread_ = std::thread([this] { serve(); });
-  }
-  ~OutputModule() {
-    stopping_ = true;
-    thread_.join();
-    close(socket_);
-    modbus_mapping_free(mapping_);
-    modbus_free(context_);
-  }
-  OutputModule(const OutputModule&) = delete;
-  OutputModule& operator=(const OutputModule&) = delete;
-
-  [[nodiscard]] int port() const { return port_; }
-  [[nodiscard]] bool coil(int index) const { return coils_[static_cast<std::size_t>(index)]; }
-  [[nodiscard]] int writes() const { return writes_; }
-  /// Hangs up at the next request instead of answering.
-  void hang_up() { hang_up_ = true; }
-
- private:
-  static bool readable(int socket) {
-    pollfd waiting{socket, POLLIN, 0};
-    return poll(&waiting, 1, 10) > 0;
-  }
-  void serve() {
-    while (!stopping_) {
-      if (!readable(socket_) || modbus_tcp_accept(context_, &socket_) < 0) continue;
-      while (!stopping_) {
-        if (!readable(modbus_get_socket(context_))) continue;
-        std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> request{};
-        const int size = modbus_receive(context_, request.data());
-        if (size < 0 || hang_up_.exchange(false)) break;
-        if (size == 0) continue;
-        // Counted before the answer, so that the writer who has it sees the effect.
-        ++writes_;
-        coils_[request[9]] = request[10] != 0;
-        modbus_reply(context_, request.data(), size, mapping_);
-      }
-      modbus_close(context_);
-    }
-  }
-
-  modbus_t* context_;
-  modbus_mapping_t* mapping_;
-  int socket_;
-  int port_ = 0;
-  std::array<std::atomic<bool>, 8> coils_{};
-  std::atomic<int> writes_ = 0;
-  std::atomic<bool> hang_up_ = false;
-  std::atomic<bool> stopping_ = false;
-  std::thread thread_;
-};
+using drive_simulator::OutputModule;
 
 ModbusCoilParameters parameters(const OutputModule& module) {
   return {.port = module.port(), .coil = 3, .timeout_s = 1.0};
@@ -86,6 +19,15 @@ ModbusCoilParameters parameters(const OutputModule& module) {
 
 Time ms(std::int64_t milliseconds) {
   return Time() + Duration::milliseconds(milliseconds);
+}
+
+/// Waits in real time, at most 5 s: the module runs on its own clock.
+template <class Condition>
+bool soon(Condition condition) {
+  for (int i = 0; i < 1000 && !condition(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return condition();
 }
 
 TEST(ModbusCoilValve, WritesItsCoilOnChangeAndToRefresh) {
@@ -100,33 +42,82 @@ TEST(ModbusCoilValve, WritesItsCoilOnChangeAndToRefresh) {
     EXPECT_EQ(module.writes(), 2);
     EXPECT_TRUE(valve.write(ms(104), true).ok());
     EXPECT_EQ(module.writes(), 3);
-    for (int other : {0, 1, 2, 4, 5, 6, 7}) EXPECT_FALSE(module.coil(other));
+    for (const std::size_t other : {0, 1, 2, 4, 5, 6, 7}) EXPECT_FALSE(module.coil(other));
   }
   EXPECT_FALSE(module.coil(3));  // shut when the driver goes
 }
 
-TEST(ModbusCoilValve, ALostModuleIsToldAndFoundAgain) {
+TEST(ModbusCoilValve, ALostConnectionIsOpenedAgainAtOnceAndShutsFirst) {
   OutputModule module;
   ModbusCoilValve valve(parameters(module));
   EXPECT_TRUE(valve.write(ms(0), false).ok());
+  EXPECT_TRUE(valve.write(ms(2), true).ok());
   module.hang_up();
-  const Status lost = valve.write(ms(2), true);
+  const Status lost = valve.write(ms(104), true);  // a refresh
   ASSERT_FALSE(lost.ok());
   EXPECT_EQ(lost.error().code, ErrorCode::kUnavailable);
-  EXPECT_FALSE(valve.write(ms(4), false).ok());  // not before reconnect_s
-  EXPECT_TRUE(valve.write(ms(600), false).ok());
+  EXPECT_FALSE(module.coil(3));  // within the same call
+  EXPECT_EQ(module.connections(), 2);
+  EXPECT_TRUE(valve.write(ms(106), false).ok());
+  EXPECT_TRUE(valve.write(ms(108), true).ok());
+  EXPECT_TRUE(module.coil(3));
+}
+
+TEST(ModbusCoilValve, AShutThatLosesItsConnectionIsConfirmedInTheSameCall) {
+  OutputModule module;
+  ModbusCoilValve valve(parameters(module));
+  EXPECT_TRUE(valve.write(ms(0), false).ok());
+  EXPECT_TRUE(valve.write(ms(2), true).ok());
+  module.hang_up();
+  EXPECT_TRUE(valve.write(ms(4), false).ok());
   EXPECT_FALSE(module.coil(3));
 }
 
-TEST(ModbusCoilValve, NobodyThereIsUnavailable) {
+TEST(ModbusCoilValve, OneLostReplyDoesNotKeepTheValveOpen) {
+  OutputModule module;
+  ModbusCoilParameters quick = parameters(module);
+  quick.timeout_s = 0.2;
+  ModbusCoilValve valve(quick);
+  EXPECT_TRUE(valve.write(ms(0), false).ok());
+  module.lose_reply();
+  EXPECT_FALSE(valve.write(ms(2), true).ok());
+  EXPECT_FALSE(module.coil(3));  // shut again by the call that did not hear of its opening
+  EXPECT_TRUE(valve.write(ms(4), false).ok());
+}
+
+TEST(ModbusCoilValve, TheWatchdogIsSetCheckedAndActsWithoutTheDriver) {
+  OutputModule module;
+  ModbusCoilParameters watched = parameters(module);
+  watched.watchdog = "wago_750";
+  watched.watchdog_s = 0.3;
+  ModbusCoilValve valve(watched);
+  EXPECT_FALSE(valve.unconfirmed().empty());
+  EXPECT_TRUE(valve.write(ms(0), false).ok());
+  EXPECT_EQ(valve.unconfirmed(), "");
+  EXPECT_TRUE(valve.write(ms(2), true).ok());
+  EXPECT_TRUE(module.coil(3));
+  EXPECT_TRUE(soon([&] { return !module.coil(3); }));  // as if the process were dead
+  EXPECT_TRUE(module.watchdog_expired());
+}
+
+TEST(ModbusCoilValve, AModuleWithoutWatchdogIsToldAsNotConfirmed) {
+  OutputModule module;
+  ModbusCoilValve valve(parameters(module));
+  EXPECT_TRUE(valve.write(ms(0), false).ok());
+  EXPECT_NE(valve.unconfirmed().find("watchdog"), std::string_view::npos);
+}
+
+TEST(ModbusCoilValve, AnAbsentModuleIsUnavailable) {
   int port = 0;
   { port = OutputModule().port(); }
   ModbusCoilValve valve({.port = port});
   EXPECT_EQ(valve.write(ms(0), true).error().code, ErrorCode::kUnavailable);
 }
 
-TEST(ModbusCoilValve, AnAddressThatIsNoneIsAConfigurationError) {
+TEST(ModbusCoilValve, RefusesBadConfiguration) {
   EXPECT_THROW(ModbusCoilValve({.address = "not an address"}), ConfigError);
+  EXPECT_THROW(ModbusCoilValve({.refresh_s = 0.2, .watchdog = "wago_750", .watchdog_s = 0.3}),
+               ConfigError);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ inline constexpr MotionLimits kLimits{-0.695, 0.695, 1.0, 10.0, 1000.0};
 /// millisecond with each request, so nothing here depends on the machine's speed.
 class Wire {
  public:
-  Wire() : server_(drive, "127.0.0.1", 0), driver_(kLimits, parameters(server_.port())) {
+  explicit Wire(const ModbusAxisParameters& base = {})
+      : server_(drive, "127.0.0.1", 0), driver_(kLimits, parameters(server_.port(), base)) {
     thread_ = std::thread([this] {
       server_.serve([this] {
         const std::lock_guard lock(mutex);
@@ -34,8 +35,8 @@ class Wire {
     server_.stop();
     thread_.join();
   }
-  static ModbusAxisParameters parameters(int port) {
-    ModbusAxisParameters p;
+  static ModbusAxisParameters parameters(int port, const ModbusAxisParameters& base = {}) {
+    ModbusAxisParameters p = base;
     p.port = port;
     p.timeout_s = 2.0;
     p.homing_speed_mps = 0.5;

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "furrow_actuation/axis_controller.hpp"
 #include "furrow_actuation/simulated_axis_driver.hpp"
+#include "furrow_actuation/tool_loop.hpp"
 
 namespace furrow::actuation::testing {
 
@@ -36,8 +36,23 @@ struct Landed {
   std::vector<Eigen::Vector2d> droplets_F;
 };
 
-/// Drives, valves and controllers on a robot whose true motion is integrated in small steps. Where
-/// droplets land follows from the history of the nozzles' positions and an integrated fall alone.
+/// A valve whose connection can be cut: then no write is confirmed.
+class CuttableValve final : public ValveDriver {
+ public:
+  explicit CuttableValve(ValveDriver& valve) : valve_(valve) {}
+  Status write(Time time, bool open) override {
+    if (cut) return Error{ErrorCode::kUnavailable, "cut"};
+    return valve_.write(time, open);
+  }
+  bool cut = false;
+
+ private:
+  ValveDriver& valve_;
+};
+
+/// Drives, valves and control loops on a robot whose true motion is integrated in small steps.
+/// Where droplets land follows from the history of the nozzles' positions and an integrated fall
+/// alone.
 class Rig {
  public:
   using Speed = std::function<Twist2(double)>;
@@ -51,24 +66,29 @@ class Rig {
       fall_s_ += 1e-5;
     }
     for (int i = 0; i < axes; ++i) {
-      const geometry::AxisModel axis = paper_axis(i);
       axes_.push_back(
-          std::make_unique<Axis>(Axis{axis,
-                                      AxisController(axis, calibration, parameters),
-                                      SimulatedAxisDriver(MotionLimits::of(axis), drive),
-                                      SimulatedValve(valve, 7, axis.name),
-                                      {},
-                                      {},
-                                      {},
-                                      {}}));
+          std::make_unique<Axis>(*this, paper_axis(i), calibration, parameters, drive, valve));
     }
   }
 
   struct Axis {
+    Axis(const Rig& rig, const geometry::AxisModel& axis, const NozzleCalibration& calibration,
+         const AxisControllerParameters& parameters, const SimulatedAxisParameters& drive,
+         const SimulatedValveParameters& valve_parameters)
+        : model(axis),
+          controller(axis, calibration, parameters),
+          driver(MotionLimits::of(axis), drive),
+          valve(valve_parameters, 7, axis.name),
+          link(valve),
+          loop(controller, driver, link, kPeriod, parameters.safety.loop_deadline_s,
+               [&rig] { return rig.now(); }) {}
+
     geometry::AxisModel model;
     AxisController controller;
     SimulatedAxisDriver driver;
     SimulatedValve valve;
+    CuttableValve link;
+    ToolLoop loop;
     ControllerOutput output;
     std::vector<ControllerEvent> events;
     std::optional<Time> flowing_since;
@@ -82,18 +102,23 @@ class Rig {
   [[nodiscard]] const std::vector<Landed>& landed() const { return landed_; }
 
   bool send_odometry = true;
-  bool write_driver = true;
+  bool send_tracks = true;
+  bool send_heartbeat = true;
+  std::vector<ProtectedPlant> crops;  ///< in the tracks
 
-  /// One cycle of 2 ms. Odometry comes every fifth cycle.
+  /// One cycle of 2 ms. Odometry, tracks and heartbeats come every fifth cycle.
   void step() {
-    if (send_odometry && cycle_ % 5 == 0) {
-      for (auto& a : axes_) a->controller.set_odometry(base_);
+    for (auto& a : axes_) {
+      if (cycle_ % 5 != 0) break;
+      if (send_odometry) a->controller.set_odometry(base_);
+      if (send_tracks) a->controller.set_protected(now_, crops);
+      if (send_heartbeat) a->controller.safety().heartbeat_came(now_);
     }
     for (int i = 0; i < size(); ++i) step_axis(i);
     drive_on();
   }
 
-  /// Cycles that a busy computer leaves out: the robot and the drives go on, nobody controls.
+  /// Cycles that a busy computer leaves out: the robot and the drives go on without control.
   void stall(int cycles) {
     for (int i = 0; i < cycles; ++i) drive_on();
   }
@@ -120,7 +145,7 @@ class Rig {
 
   void step_axis(int i) {
     Axis& a = axis(i);
-    if (a.driver.read(now_, kPeriod).ok()) a.controller.set_reading(a.driver.reading());
+    a.driver.advance(now_);
     const auto p_BN = a.model.nozzle_position_B(a.driver.reading().position_m);
     a.nozzle_F.push_back(geometry::transform(base_.X_FB, p_BN.head<2>()));
     if (a.nozzle_F.size() > 200) a.nozzle_F.pop_front();
@@ -132,10 +157,8 @@ class Rig {
         a.flowing_since.reset();
       }
     }
-    a.output = a.controller.update(now_, kPeriod);
+    a.output = a.loop.cycle(now_).output;
     for (const auto& event : a.output.events) a.events.push_back(event);
-    (void)a.valve.write(now_, a.output.valve_open).ok();
-    if (write_driver) (void)a.driver.write(now_, kPeriod, a.output.axis).ok();
   }
 
   Eigen::Vector2d nozzle_at(const Axis& a, Time time) const {

@@ -55,7 +55,7 @@ class Ordeal {
     for (int i = 0; i < 25; ++i) {
       crops_.push_back({i, {random_.uniform(0.2, 3.0), random_.uniform(-0.6, 0.6)}});
     }
-    controller().set_protected(crops_);
+    rig_.crops = crops_;
     for (int i = 0; i < 40; ++i) {
       auto stop = stop_at(100 + i, {random_.uniform(0.2, 3.0), random_.uniform(-0.8, 0.8)}, {});
       if (random_.bernoulli(0.3)) {  // right beside a crop
@@ -112,13 +112,13 @@ class Ordeal {
 
   void meddle() {
     const Time now = rig_.now();
-    switch (random_.integer(0, 12)) {
+    switch (random_.integer(0, 15)) {
       case 0:
         emergency_stop_ = random_.bernoulli(0.3);
-        controller().set_emergency_stop(emergency_stop_);
+        controller().safety().set_emergency_stop(emergency_stop_);
         break;
       case 1:
-        controller().set_peer_lost(random_.bernoulli(0.2));
+        rig_.send_heartbeat = random_.bernoulli(0.8);
         break;
       case 2:
         driver().inject(now, random_.bernoulli(0.5) ? DriveFault::kDrive : DriveFault::kNone);
@@ -142,16 +142,26 @@ class Ordeal {
       case 8:
         if (random_.bernoulli(0.2)) (void)driver().emergency_stop(now).ok();
         break;
+      case 9:
+        rig_.axis(0).link.cut = random_.bernoulli(0.3);
+        break;
+      case 10:
+        rig_.send_tracks = random_.bernoulli(0.7);
+        break;
+      case 11:
+        controller().safety().set_active(random_.bernoulli(0.7));
+        break;
       default:  // the operator sets everything right
         driver().set_connected(now, true);
         driver().set_jammed(false);
         driver().clear_faults();
-        (void)driver().reset(now).ok();
-        (void)driver().enable(now).ok();
+        rig_.axis(0).link.cut = false;
         rig_.send_odometry = true;
+        rig_.send_tracks = true;
+        rig_.send_heartbeat = true;
         send_plan_ = true;
-        controller().set_peer_lost(false);
-        if (!emergency_stop_) controller().reset();
+        controller().safety().set_active(true);
+        rig_.axis(0).loop.request_reset(now, SafetyCause::kNone);
         break;
     }
   }
@@ -192,8 +202,8 @@ class Ordeal {
     ASSERT_FALSE(emergency_stop_);
     ASSERT_FALSE(dry_run_ && open_cycles_ == 0);
     const AxisControllerParameters deadlines;
-    ASSERT_LE((rig_.now() - planned_).to_seconds(), deadlines.plan_deadline_s + 2 * h);
-    ASSERT_LE((rig_.now() - odometry_).to_seconds(), deadlines.odometry_deadline_s + 2 * h);
+    ASSERT_LE((rig_.now() - planned_).to_seconds(), deadlines.safety.plan_deadline_s + 2 * h);
+    ASSERT_LE((rig_.now() - odometry_).to_seconds(), deadlines.safety.odometry_deadline_s + 2 * h);
     ASSERT_GT(rig_.base().twist_B.vx_mps, 0.0);
     ASSERT_LE(++open_cycles_, 16);  // dwell, in cycles of 2 ms, and one more
   }
@@ -212,7 +222,7 @@ class Ordeal {
         ++totals.skipped;
         if (event.reason == SkipReason::kProtectedCrop) ++totals.protected_crop;
       }
-      if (event.kind == ControllerEventKind::kMadeSafe) ++totals.safe;
+      if (event.kind == ControllerEventKind::kSafeState) ++totals.safe;
     }
     for (const auto& [stop, count] : outcomes) EXPECT_EQ(count, 1) << "stop " << stop;
     EXPECT_LE(rig_.landed().size(), static_cast<std::size_t>(opened));

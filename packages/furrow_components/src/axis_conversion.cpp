@@ -33,6 +33,8 @@ msgs::AxisMode axis_mode(actuation::ControllerMode mode) {
       return AxisMode::kWaiting;
     case ControllerMode::kRunning:
       return AxisMode::kRunning;
+    case ControllerMode::kInactive:
+      return AxisMode::kInactive;
     case ControllerMode::kSafe:
       break;
   }
@@ -66,9 +68,24 @@ msgs::SafetyCause safety_cause(actuation::SafetyCause cause) {
     case From::kValveFault:
       return To::kValveFault;
     case From::kProtectionOverflow:
+      return To::kProtectionOverflow;
+    case From::kProtectionInvalid:
+      return To::kProtectionInvalid;
+    case From::kTracksStale:
+      return To::kTracksStale;
+    case From::kLoopStalled:
+      return To::kLoopStalled;
+    case From::kLatchesUnknown:
       break;
   }
-  return To::kProtectionOverflow;
+  return To::kLatchesUnknown;
+}
+
+actuation::SafetyCause safety_cause(msgs::SafetyCause cause) {
+  for (const actuation::SafetyRule& rule : actuation::safety_rules()) {
+    if (safety_cause(rule.cause) == cause) return rule.cause;
+  }
+  return actuation::SafetyCause::kNone;
 }
 
 msgs::AxisEventKind skip_event(actuation::SkipReason reason) {
@@ -84,6 +101,8 @@ msgs::AxisEventKind skip_event(actuation::SkipReason reason) {
       return AxisEventKind::kStale;
     case SkipReason::kProtectedCrop:
       return AxisEventKind::kProtectedCrop;
+    case SkipReason::kInactive:
+      return AxisEventKind::kInactive;
     case SkipReason::kFault:
     case SkipReason::kStanding:
       break;
@@ -91,13 +110,13 @@ msgs::AxisEventKind skip_event(actuation::SkipReason reason) {
   return AxisEventKind::kFault;
 }
 
-actuation::PlannedStop from_msg(const furrow_msgs::msg::Stop& message, Time observed) {
+actuation::PlannedStop from_msg(const furrow_msgs::msg::Stop& message) {
   actuation::PlannedStop stop;
   stop.stop_id = message.id();
   stop.p_F = from_point(message.aim()).head<2>();
   for (const std::int64_t track : message.track_ids()) stop.targets.push_back(track);
   stop.intended = graph::from_msg(message.expected());
-  stop.observed = observed;
+  stop.observed = graph::from_msg(message.observed());
   stop.fire_while_moving = message.while_moving();
   return stop;
 }

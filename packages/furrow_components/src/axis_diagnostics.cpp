@@ -5,10 +5,11 @@
 #include "furrow_msgs/enums.hpp"
 
 namespace furrow::components {
+
 diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& component,
                                                        const furrow_msgs::msg::AxisState& state,
                                                        Time cause_found,
-                                                       const std::string& refusal) {
+                                                       const AxisRemarks& remarks) {
   diagnostic_msgs::msg::DiagnosticArray array;
   array.header().stamp(state.header().stamp());
   auto& status = array.status().emplace_back();
@@ -23,7 +24,9 @@ diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& compon
         msgs::to_string(state.cause()) + " at " + fixed(cause_found.to_seconds(), 3) + " s");
   } else if (state.mode() != msgs::AxisMode::kRunning) {
     set(graph::HealthLevel::kWarn,
-        refusal.empty() ? msgs::to_string(state.mode()) : "drive: " + refusal);
+        remarks.refusal.empty() ? msgs::to_string(state.mode()) : "drive: " + remarks.refusal);
+  } else if (!remarks.not_confirmed.empty()) {
+    set(graph::HealthLevel::kWarn, "not confirmed: " + remarks.not_confirmed);
   } else {
     set(graph::HealthLevel::kOk, "running");
   }
@@ -34,6 +37,13 @@ diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(const std::string& compon
   };
   value("drive", msgs::to_string(state.state()));
   value("mode", msgs::to_string(state.mode()));
+  std::string latched;
+  for (const auto& cause : state.latched()) {
+    latched += (latched.empty() ? "" : ", ") + msgs::to_string(cause);
+  }
+  value("latched", latched);
+  value("latches", remarks.latches);
+  value("not_confirmed", remarks.not_confirmed);
   value("position_m", fixed(state.position_m(), 4));
   value("travel_m", fixed(state.travel_m(), 3));
   value("openings", std::to_string(state.openings()));

@@ -25,12 +25,10 @@ void AxisDriverParameters::visit(ParameterVisitor& v) {
            .min = 0.1,
            .max = 10.0},
           protected_range_m);
-  v.visit({.name = "heartbeat_deadline_s",
-           .unit = "s",
-           .description = "a planner that is silent for longer makes the tool safe",
-           .min = 0.01,
-           .max = 10.0},
-          heartbeat_deadline_s);
+  v.visit({.name = "latch_folder",
+           .description = "folder for the causes that are latched, so that a restart keeps them; "
+                          "empty: a restart forgets them"},
+          latch_folder);
   v.visit({.name = "nozzle_file",
            .description = "calibration with an entry for this axis, as `furrow calibrate` writes "
                           "it; empty: the nozzle_* below"},

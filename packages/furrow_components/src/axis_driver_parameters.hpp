@@ -15,7 +15,7 @@ struct AxisDriverParameters {
   double state_rate_hz = 50.0;
   double crop_threshold = 0.5;
   double protected_range_m = 1.0;
-  double heartbeat_deadline_s = 0.07;
+  std::string latch_folder;
   std::string nozzle_file;
   actuation::NozzleCalibration nozzle;
   actuation::AxisControllerParameters controller;

@@ -1,6 +1,7 @@
 #include "plan_conversion.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "furrow_graph/stamp.hpp"
 
@@ -28,6 +29,12 @@ msgs::DecisionKind decision_kind(planning::Decision decision) {
       break;
   }
   return DecisionKind::kFault;
+}
+
+void PlanConversion::seen(std::int64_t track, Time last_seen) {
+  constexpr std::size_t kMostTracks = 20'000;
+  last_seen_[track] = last_seen;
+  if (last_seen_.size() > kMostTracks) last_seen_.erase(last_seen_.begin());
 }
 
 furrow_msgs::msg::Plan PlanConversion::to_msg(const planning::Plan& plan, const BaseOdometry& base,
@@ -63,6 +70,14 @@ furrow_msgs::msg::Stop PlanConversion::to_msg(const planning::Plan& plan,
   message.while_moving(stop.moving);
   const auto targets = plan.targets_of(stop);
   message.track_ids().assign(targets.begin(), targets.end());
+  // The aim is as old as the target that was not seen for longest. An unknown one was never seen.
+  std::optional<Time> observed;
+  for (const planning::TargetId id : targets) {
+    const auto known = last_seen_.find(id);
+    const Time last = known == last_seen_.end() ? Time() : known->second;
+    observed = std::min(observed.value_or(last), last);
+  }
+  message.observed(graph::to_msg(observed.value_or(Time())));
   return message;
 }
 

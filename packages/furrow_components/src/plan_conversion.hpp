@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "furrow_components/conversions.hpp"
@@ -19,6 +20,8 @@ class PlanConversion {
  public:
   explicit PlanConversion(std::vector<LateralAxis> axes) : axes_(std::move(axes)) {}
 
+  /// Notes when a track was seen last; stops tell it of their targets.
+  void seen(std::int64_t track, Time last_seen);
   /// The routes and the decisions about their targets, as of a pose of the base. The message gets
   /// the stamp of the tracks.
   [[nodiscard]] furrow_msgs::msg::Plan to_msg(const planning::Plan& plan, const BaseOdometry& base,
@@ -34,6 +37,7 @@ class PlanConversion {
                                               const BaseOdometry& base);
 
   std::vector<LateralAxis> axes_;
+  std::map<std::int64_t, Time> last_seen_;  ///< by track; bounded, the oldest tracks go first
   std::uint64_t revision_ = 0;
   std::int64_t stop_id_ = 0;
 };

@@ -74,10 +74,14 @@ class PlannerComponent final : public graph::Component {
     take(tracks, stale);
     const planning::RobotState robot{base->X_FB.x_m, base->X_FB.y_m, base->speed_mps};
     if (const Status moved = view_->advance(robot, robot.x_m + seen_x_m_); !moved.ok()) {
-      no_plan("standing_or_reversing", graph::HealthLevel::kWarn, moved.error());
+      no_plan("bad_odometry", graph::HealthLevel::kWarn, moved.error());
       return;
     }
-    speed_requests_.consider(robot, *view_);
+    if (robot.speed_mps > 0.0) {
+      speed_requests_.consider(robot, *view_);
+    } else {
+      context_.count("standing_or_reversing");
+    }
     const auto planned = view_->replan();
     if (!planned.ok()) {
       no_plan("no_plan", graph::HealthLevel::kError, planned.error());
@@ -123,6 +127,7 @@ class PlannerComponent final : public graph::Component {
     invalid_.clear();
     for (const Track& track : tracks.tracks()) {
       if (!msgs::from_msg(track.state()).ok()) context_.count("unknown_values");
+      conversion_.seen(track.id(), graph::from_msg(track.last_seen()));
       const planning::CropPhenotype crop{from_point(track.position()).head<2>(), track.area_mm2()};
       // An invalid crop would take the weight from every weed near it.
       const bool valid = crop.p_F.allFinite() && std::isfinite(crop.area_mm2) && crop.area_mm2 >= 0;

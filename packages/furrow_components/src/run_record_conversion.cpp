@@ -54,10 +54,13 @@ Reason reason_of(msgs::AxisEventKind event) {
       return Reason::kProtectedCrop;
     case AxisEventKind::kFault:
       return Reason::kFault;
+    case AxisEventKind::kInactive:
+      return Reason::kInactive;
     case AxisEventKind::kSprayed:
     case AxisEventKind::kDryRun:
     case AxisEventKind::kSafeState:
     case AxisEventKind::kReset:
+    case AxisEventKind::kResetRefused:
       break;
   }
   return Reason::kNone;
@@ -140,7 +143,8 @@ Result<ledger::RunRecord> from_msg(const furrow_msgs::msg::RunRecord& message,
                              .p_F_m = from_point(spray.centre()).head<2>(),
                              .radius_m = spray.radius_m(),
                              .aim_F_m = from_point(spray.aim()).head<2>(),
-                             .track_ids = spray.track_ids()});
+                             .track_ids = spray.track_ids(),
+                             .commanded = spray.stop_id() != 0});
   }
   add_paths(message, axes, record);
   return record;

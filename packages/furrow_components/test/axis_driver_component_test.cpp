@@ -1,10 +1,13 @@
-// The axis driver as a component, in simulated time: it comes into service, sprays, makes itself
-// safe and starts again.
+// The axis driver as a component, in simulated time: it comes into service, sprays, enters the safe
+// state and starts again.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -36,7 +39,12 @@ struct World {
   std::function<bool(double)> planner_alive = [](double) { return true; };
   std::function<bool(double)> odometry_comes = [](double) { return true; };
   std::function<bool(double)> emergency_stop = [](double) { return false; };
+  std::function<bool(double)> tracks_come = [](double) { return true; };
+  std::function<bool(double)> tool_down = [](double) { return true; };
+  std::function<bool(double)> bad_crop = [](double) { return false; };
+  double seen_s_before = 0.0;  ///< how long before each plan its targets were seen
   std::vector<double> resets_s;
+  msgs::SafetyCause reset_cause = msgs::SafetyCause::kNone;  ///< of the resets; kNone: all
 
   std::vector<AxisEvent> events;
   std::vector<AxisState> states;
@@ -68,7 +76,8 @@ class Feeder final : public graph::Component {
         odometry_out_(context.output<topics::RobotOdometry>()),
         tracks_out_(context.output<topics::Tracks>()),
         stop_out_(context.output<topics::EmergencyStop>()),
-        reset_out_(context.output<topics::ToolReset>()) {
+        reset_out_(context.output<topics::ToolReset>()),
+        enable_out_(context.output<topics::ToolEnable>()) {
     context.every(Duration::milliseconds(10), [this, &context](Time now) {
       step(now);
       if (now.to_seconds() >= world_.seconds) context.request_stop("finished");
@@ -100,7 +109,8 @@ class Feeder final : public graph::Component {
         .output<topics::RobotOdometry>()
         .output<topics::Tracks>()
         .output<topics::EmergencyStop>()
-        .output<topics::ToolReset>();
+        .output<topics::ToolReset>()
+        .output<topics::ToolEnable>();
   }
 
  private:
@@ -117,8 +127,16 @@ class Feeder final : public graph::Component {
       stop_out_.publish(std::move(message));
     }
     for (const double reset_s : world_.resets_s) {
-      if (std::abs(t_s - reset_s) < 0.004) reset_out_.publish(furrow_msgs::msg::ToolReset());
+      if (std::abs(t_s - reset_s) >= 0.004) continue;
+      furrow_msgs::msg::ToolReset reset;
+      reset.cause(msgs::to_msg(world_.reset_cause));
+      reset_out_.publish(std::move(reset));
     }
+    if (world_.tool_down(t_s) == down_) return;
+    down_ = !down_;
+    furrow_msgs::msg::ToolEnable enable;
+    enable.active(down_);
+    enable_out_.publish(std::move(enable));
   }
 
   void plan(Time now) {
@@ -134,10 +152,18 @@ class Feeder final : public graph::Component {
       const double y_m = i % 2 == 0 ? 0.1 : -0.1;
       stop.aim(to_point(Eigen::Vector2d(kSpacing_m * static_cast<double>(i), y_m)));
       stop.track_ids({i});
+      stop.observed(graph::to_msg(now - Duration::seconds(world_.seen_s_before)));
     }
     plan_out_.publish(std::move(plan));
+    if (!world_.tracks_come(now.to_seconds())) return;
     furrow_msgs::msg::Tracks tracks;
     tracks.header(header(now, kFieldFrame));
+    if (world_.bad_crop(now.to_seconds())) {
+      auto& track = tracks.tracks().emplace_back();
+      track.confirmed(true);
+      track.crop_probability(0.9);
+      track.position().x(std::numeric_limits<double>::quiet_NaN());
+    }
     tracks_out_.publish(std::move(tracks));
   }
 
@@ -148,7 +174,9 @@ class Feeder final : public graph::Component {
   graph::Output<topics::Tracks> tracks_out_;
   graph::Output<topics::EmergencyStop> stop_out_;
   graph::Output<topics::ToolReset> reset_out_;
+  graph::Output<topics::ToolEnable> enable_out_;
   bool pressed_ = false;
+  bool down_ = true;
 };
 
 void run(World& world, const std::map<std::string, ParameterValue>& parameters = {}) {
@@ -257,11 +285,91 @@ TEST(AxisDriverComponent, OdometryThatStopsMakesItSafeUntilReset) {
 
 TEST(AxisDriverComponent, AValveThatCannotBeReachedIsAFault) {
   World world;
-  // Nobody listens at port 9 of the loopback.
+  // No server listens at port 9 of the loopback.
   run(world, {{"valve", std::string("modbus_coils")}, {"coil_port", std::int64_t{9}}});
   ASSERT_FALSE(world.events_of(AxisEventKind::kSafeState).empty());
   EXPECT_TRUE(world.events_of(AxisEventKind::kSafeState)[0].cause() == SafetyCause::kValveFault);
   EXPECT_TRUE(world.events_of(AxisEventKind::kSprayed).empty());
+}
+
+TEST(AxisDriverComponent, ACropThatIsNotFiniteIsACauseForTheSafeState) {
+  World world;
+  world.bad_crop = [](double t_s) { return t_s > 2.0 && t_s < 2.5; };
+  run(world);
+  const auto safe = world.events_named(AxisEventKind::kSafeState);
+  ASSERT_EQ(safe.size(), 1u);
+  EXPECT_TRUE(safe[0].cause() == msgs::SafetyCause::kProtectionInvalid);
+  EXPECT_EQ(world.sprays_between(2.3, 6.0), 0);
+}
+
+TEST(AxisDriverComponent, WithoutTracksCropsAreNotProtectedAndNothingIsSprayed) {
+  World world;
+  world.tracks_come = [](double t_s) { return t_s < 2.0; };  // plans go on
+  run(world);
+  const auto safe = world.events_named(AxisEventKind::kSafeState);
+  ASSERT_EQ(safe.size(), 1u);
+  EXPECT_TRUE(safe[0].cause() == msgs::SafetyCause::kTracksStale);
+  EXPECT_NEAR(graph::from_msg(safe[0].closed()).to_seconds(), 1.8 + 2.0, 0.004);
+  EXPECT_EQ(world.sprays_between(3.81, 6.0), 0);
+}
+
+TEST(AxisDriverComponent, TargetsThatWereNotSeenForTooLongAreNotSprayed) {
+  World world;
+  world.seen_s_before = 3.0;
+  run(world, {{"max_target_age_s", 2.5}});
+  EXPECT_EQ(world.sprays_between(0.0, 6.0), 0);
+  EXPECT_GT(world.events_named(AxisEventKind::kStale).size(), 5u);
+}
+
+TEST(AxisDriverComponent, AResetOfAnotherCauseLeavesALatchedOneAlone) {
+  World world;
+  world.emergency_stop = [](double t_s) { return t_s >= 2.0 && t_s < 3.0; };
+  world.resets_s = {4.0};
+  world.reset_cause = msgs::SafetyCause::kPeerLost;
+  run(world);
+  EXPECT_TRUE(world.states.back().mode() == AxisMode::kSafe);
+  EXPECT_TRUE(world.states.back().cause() == msgs::SafetyCause::kEmergencyStop);
+  ASSERT_EQ(world.states.back().latched().size(), 1u);
+  EXPECT_TRUE(world.events_named(AxisEventKind::kReset).empty());
+}
+
+TEST(AxisDriverComponent, AResetWhileTheCauseHoldsIsRefused) {
+  World world;
+  world.emergency_stop = [](double t_s) { return t_s >= 2.0; };
+  world.resets_s = {4.0};
+  run(world);
+  EXPECT_EQ(world.events_named(AxisEventKind::kResetRefused).size(), 1u);
+  EXPECT_TRUE(world.states.back().mode() == AxisMode::kSafe);
+}
+
+TEST(AxisDriverComponent, LatchesSurviveARestartOfTheProcess) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("furrow_axis_latches_" + std::to_string(getpid()));
+  std::filesystem::remove_all(folder);
+  const std::map<std::string, ParameterValue> kept = {{"latch_folder", folder.string()}};
+  World first;
+  first.emergency_stop = [](double t_s) { return t_s >= 2.0 && t_s < 3.0; };
+  run(first, kept);
+  World second;
+  second.resets_s = {3.0};
+  run(second, kept);
+  EXPECT_EQ(second.sprays_between(0.0, 3.0), 0);
+  EXPECT_TRUE(second.states.front().cause() == msgs::SafetyCause::kEmergencyStop);
+  EXPECT_GT(second.sprays_between(3.0, 6.0), 3);
+  World third;
+  run(third, kept);
+  EXPECT_GT(third.sprays_between(0.0, 3.0), 3);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(AxisDriverComponent, ARaisedToolSpraysNothingAndTheStopsAreAccountedFor) {
+  World world;
+  world.tool_down = [](double t_s) { return t_s < 2.0 || t_s > 3.5; };
+  run(world);
+  EXPECT_EQ(world.sprays_between(2.02, 3.5), 0);
+  EXPECT_GE(world.events_named(AxisEventKind::kInactive).size(), 3u);
+  EXPECT_GT(world.sprays_between(3.5, 6.0), 4);
+  EXPECT_TRUE(world.events_named(AxisEventKind::kSafeState).empty());
 }
 
 TEST(AxisDriverComponent, AnEmergencyStopInputThatIsNotThereIsAConfigurationError) {

@@ -31,18 +31,20 @@ TEST(EnumConversion, DriveStatesKeepTheirWords) {
 
 TEST(EnumConversion, ModesKeepTheirWords) {
   using actuation::ControllerMode;
-  expect_same_words({ControllerMode::kWaiting, ControllerMode::kRunning, ControllerMode::kSafe},
+  expect_same_words({ControllerMode::kWaiting, ControllerMode::kRunning, ControllerMode::kSafe,
+                     ControllerMode::kInactive},
                     axis_mode);
 }
 
-TEST(EnumConversion, SafetyCausesKeepTheirWords) {
+TEST(EnumConversion, SafetyCausesKeepTheirWordsInBothDirections) {
   using actuation::SafetyCause;
-  expect_same_words(
-      {SafetyCause::kNone, SafetyCause::kEmergencyStop, SafetyCause::kPeerLost,
-       SafetyCause::kPlanStale, SafetyCause::kOdometryStale, SafetyCause::kOdometryInvalid,
-       SafetyCause::kReadingStale, SafetyCause::kDriveFault, SafetyCause::kPositionLimit,
-       SafetyCause::kFollowingError, SafetyCause::kValveFault, SafetyCause::kProtectionOverflow},
-      safety_cause);
+  const auto to_wire = [](SafetyCause cause) { return safety_cause(cause); };
+  expect_same_words({SafetyCause::kNone}, to_wire);
+  for (const actuation::SafetyRule& rule : actuation::safety_rules()) {
+    expect_same_words({rule.cause}, to_wire);
+    EXPECT_EQ(safety_cause(safety_cause(rule.cause)), rule.cause);
+  }
+  EXPECT_EQ(safety_cause(msgs::SafetyCause::kNone), SafetyCause::kNone);
 }
 
 TEST(EnumConversion, SkippedStopsAreReportedByTheirEffect) {
@@ -55,6 +57,7 @@ TEST(EnumConversion, SkippedStopsAreReportedByTheirEffect) {
   EXPECT_EQ(skip_event(SkipReason::kProtectedCrop), AxisEventKind::kProtectedCrop);
   EXPECT_EQ(skip_event(SkipReason::kFault), AxisEventKind::kFault);
   EXPECT_EQ(skip_event(SkipReason::kStanding), AxisEventKind::kFault);
+  EXPECT_EQ(skip_event(SkipReason::kInactive), AxisEventKind::kInactive);
 }
 
 TEST(EnumConversion, DecisionsAreReportedByTheirEffect) {

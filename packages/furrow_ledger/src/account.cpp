@@ -128,7 +128,7 @@ class Accountant {
         const std::size_t plant = association_.plant_of_track[track->second];
         if (plant != kNoIndex) aim_at(plant, spray.aim_F_m - tracks_[track->second].p_F_m);
       }
-      if (spray.track_ids.empty()) {
+      if (spray.track_ids.empty() && spray.commanded) {
         grid.for_each_within(
             spray.aim_F_m, parameters_.partial_radius_m,
             [&](std::size_t plant, double) { aim_at(plant, Eigen::Vector2d::Zero()); });
@@ -215,7 +215,11 @@ class Accountant {
       const auto axis = static_cast<std::size_t>(spray.axis);
       if (axis >= summary.sprays_by_axis.size()) summary.sprays_by_axis.resize(axis + 1, 0);
       ++summary.sprays_by_axis[axis];
-      aim_mm.push_back((spray.p_F_m - spray.aim_F_m).norm() * 1e3);
+      if (spray.commanded) {
+        aim_mm.push_back((spray.p_F_m - spray.aim_F_m).norm() * 1e3);
+      } else {
+        ++summary.sprays_uncommanded;
+      }
     }
     for (std::size_t i = 0; i < plants_.size(); ++i) {
       const Sprayed& sprayed = sprayed_[i];

@@ -6,8 +6,9 @@ namespace furrow::ledger {
 namespace {
 
 constexpr std::array<std::string_view, kReasonCount> kReasonNames = {
-    "none",        "undetected", "unconfirmed", "misclassified", "low_priority", "protected_crop",
-    "unreachable", "stale",      "outside",     "fault",         "placement",    "end_of_run"};
+    "none",           "undetected",  "unconfirmed", "misclassified", "low_priority",
+    "protected_crop", "unreachable", "stale",       "outside",       "fault",
+    "placement",      "end_of_run",  "inactive"};
 
 }  // namespace
 

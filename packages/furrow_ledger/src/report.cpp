@@ -125,6 +125,7 @@ Facts summary_facts(const Summary& s) {
           {"Crops hit", count(s.crops_hit)},
           {"Sprays", count(s.sprays)},
           {"Sprays that took no weed", count(s.sprays_without_weed)},
+          {"Sprays without a command", count(s.sprays_uncommanded)},
           {"Placement error, median", millimetres(s.placement_error_p50_mm)},
           {"Placement error, p95", millimetres(s.placement_error_p95_mm)},
           {"Spray centre to aim, median", millimetres(s.aim_error_p50_mm)},

@@ -108,6 +108,7 @@ std::string to_json(const Summary& summary) {
   json["crops_hit"] = summary.crops_hit;
   json["sprays"] = summary.sprays;
   json["sprays_without_weed"] = summary.sprays_without_weed;
+  json["sprays_uncommanded"] = summary.sprays_uncommanded;
   json["sprays_by_axis"] = summary.sprays_by_axis;
   json["placement_error_p50_mm"] = rounded(summary.placement_error_p50_mm);
   json["placement_error_p95_mm"] = rounded(summary.placement_error_p95_mm);

@@ -28,6 +28,7 @@ enum Row : std::size_t {
   kJointStates,
   kEmergencyStop,
   kToolReset,
+  kToolEnable,
   kMarkers,
   kTrueOdometry,
   kTrueField,
@@ -97,7 +98,9 @@ const std::array<Topic, kRows>& table() {
       {"emergency_stop", &message_type<topics::EmergencyStop::Message>(), latched_qos(), 0, "",
        "Valves shut and axes stopped while active."},
       {"tool/reset", &message_type<topics::ToolReset::Message>(), event_qos(), 0, "",
-       "Lets axes that made themselves safe start again."},
+       "Resets latched causes of the safe state."},
+      {"tool/enable", &message_type<topics::ToolEnable::Message>(), latched_qos(), 0, "",
+       "Whether the tool is down and may work, or raised."},
       {"markers", &message_type<topics::Markers::Message>(), event_qos(), 3, "field",
        "Plants, plan and sprays as RViz draws them; m."},
       {"truth/odometry", &message_type<topics::TrueOdometry::Message>(), reliable_stream_qos(50),
@@ -184,6 +187,9 @@ const Topic& EmergencyStop::topic() {
 }
 const Topic& ToolReset::topic() {
   return table()[kToolReset];
+}
+const Topic& ToolEnable::topic() {
+  return table()[kToolEnable];
 }
 const Topic& Markers::topic() {
   return table()[kMarkers];

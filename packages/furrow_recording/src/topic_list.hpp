@@ -29,8 +29,9 @@ using AllTopics =
               msgs::topics::Instances, msgs::topics::Tracks, msgs::topics::Plan,
               msgs::topics::PlannerHeartbeat, msgs::topics::SpeedRequest, msgs::topics::AxisState,
               msgs::topics::AxisEvent, msgs::topics::JointStates, msgs::topics::EmergencyStop,
-              msgs::topics::ToolReset, msgs::topics::Markers, msgs::topics::TrueOdometry,
-              msgs::topics::TrueField, msgs::topics::TrueInstances, msgs::topics::TrueSpray,
-              msgs::topics::RunStatus, msgs::topics::RunRecord, msgs::topics::Diagnostics>;
+              msgs::topics::ToolReset, msgs::topics::ToolEnable, msgs::topics::Markers,
+              msgs::topics::TrueOdometry, msgs::topics::TrueField, msgs::topics::TrueInstances,
+              msgs::topics::TrueSpray, msgs::topics::RunStatus, msgs::topics::RunRecord,
+              msgs::topics::Diagnostics>;
 
 }  // namespace furrow::recording

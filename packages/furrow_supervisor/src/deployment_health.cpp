@@ -1,10 +1,9 @@
 #include "furrow_supervisor/deployment_health.hpp"
 
-#include <algorithm>
 #include <array>
-#include <string_view>
 #include <utility>
 
+#include "furrow_msgs/enums.hpp"
 #include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 
@@ -12,17 +11,6 @@ namespace furrow::supervisor {
 namespace {
 
 constexpr std::array<const char*, 4> kLevels = {"ok", "warning", "error", "stale"};
-
-constexpr std::uint8_t kError = 2;
-constexpr std::chrono::seconds kBetweenResets{1};
-
-// Causes that pass when the process or the network is back.
-bool lost_a_peer(const diagnostic_msgs::msg::DiagnosticStatus& status) {
-  constexpr std::array<std::string_view, 3> kCauses = {"peer_lost", "plan_stale", "odometry_stale"};
-  return status.level() == kError && std::ranges::any_of(kCauses, [&](std::string_view cause) {
-           return status.message().starts_with(cause);
-         });
-}
 
 }  // namespace
 
@@ -36,6 +24,12 @@ DeploymentHealth::DeploymentHealth(const dds::DdsParameters& parameters, bool re
   if (resume_) {
     const msgs::Topic& reset = msgs::topics::ToolReset::topic();
     reset_ = transport_->make_writer(std::string(reset.name), *reset.type, reset.qos);
+    const msgs::Topic& state = msgs::topics::AxisState::topic();
+    states_ = transport_->make_reader(
+        std::string(state.name), *state.type, state.qos, [this](const graph::MessagePtr& message) {
+          const std::lock_guard lock(mutex_);
+          policy_.take(*static_cast<const furrow_msgs::msg::AxisState*>(message.get()));
+        });
   }
   const msgs::Topic& topic = msgs::topics::Diagnostics::topic();
   reader_ = transport_->make_reader(
@@ -47,11 +41,6 @@ DeploymentHealth::DeploymentHealth(const dds::DdsParameters& parameters, bool re
 void DeploymentHealth::take(const diagnostic_msgs::msg::DiagnosticArray& array) {
   const std::lock_guard lock(mutex_);
   for (const auto& status : array.status()) {
-    if (!lost_a_peer(status)) {
-      cut_off_.erase(status.name());
-    } else if (cut_off_.size() < kMaxNames) {
-      cut_off_.insert(status.name());
-    }
     const auto known = levels_.find(status.name());
     const std::uint8_t before = known == levels_.end() ? 0 : known->second;
     if (status.level() == before || status.level() >= kLevels.size()) continue;
@@ -74,12 +63,11 @@ std::vector<std::string> DeploymentHealth::tick() {
 }
 
 void DeploymentHealth::resume_tools() {
-  const auto now = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
-  if (cut_off_.empty() || now - last_reset_ < kBetweenResets) return;
-  last_reset_ = now;
-  changes_.push_back("tools that lost a peer: told to start again");
-  reset_->write(std::make_shared<const furrow_msgs::msg::ToolReset>());
+  for (auto& reset : policy_.due(ResumePolicy::Clock::now())) {
+    changes_.push_back(reset.axis() + ": reset of " + msgs::to_string(reset.cause()));
+    reset_->write(std::make_shared<const furrow_msgs::msg::ToolReset>(std::move(reset)));
+  }
 }
 
 }  // namespace furrow::supervisor

@@ -35,6 +35,17 @@ bool has_scorer(const graph::GraphSpec& graph, const graph::PlacedProcess& proce
   });
 }
 
+/// The drivers whose parameters name no folder for what they have latched.
+std::vector<std::string> drivers_without_latches(const graph::GraphSpec& graph) {
+  std::vector<std::string> names;
+  for (const auto& component : graph.components) {
+    const bool named = std::ranges::any_of(
+        component.parameters, [](const auto& given) { return given.name == "latch_folder"; });
+    if (component.class_name == "axis_driver" && !named) names.push_back(component.name);
+  }
+  return names;
+}
+
 /// Where the deployment's processes find each other, when that is this host.
 std::unique_ptr<dds::DiscoveryServer> make_discovery_server(const graph::DeploymentSpec& deployment,
                                                             const std::string& host,
@@ -56,6 +67,7 @@ SupervisedDeployment::SupervisedDeployment(launch::RunOptions options, const std
   deployment_ = launch::prepare_deployment(options_);
   const auto placed = graph::place_components(prepared.spec, deployment_);
   host_ = pick_host(deployment_, host);
+  drivers_without_latches_ = drivers_without_latches(prepared.spec);
   ParameterLoader::load(graph::transport_parameters(deployment_, host_), dds_);
   for (const graph::PlacedProcess& process : placed) {
     if (process.host != host_) continue;
@@ -73,7 +85,12 @@ std::vector<SupervisedProcess> SupervisedDeployment::commands(
     const RunParameters& parameters) const {
   launch::RunOptions options = options_;
   options.out = parameters.out.string();
-  const std::vector<std::string> arguments = launch::run_arguments(options);
+  std::vector<std::string> arguments = launch::run_arguments(options);
+  // A process that is restarted finds what it had latched.
+  const std::string latches = (parameters.out / "latches").string();
+  for (const std::string& driver : drivers_without_latches_) {
+    arguments.push_back("--set=" + driver + ".latch_folder=" + latches);
+  }
   std::vector<SupervisedProcess> commands;
   for (const Process& process : processes_) {
     std::vector<std::string> command = {parameters.program.string()};

@@ -7,40 +7,42 @@
 
 #include "furrow_actuation/axis_controller_types.hpp"
 #include "furrow_actuation/crossing.hpp"
+#include "furrow_actuation/ground_progress.hpp"
 #include "furrow_actuation/motion_profile.hpp"
 #include "furrow_actuation/nozzle.hpp"
+#include "furrow_actuation/tool_safety.hpp"
 #include "furrow_geometry/tool_model.hpp"
 
 namespace furrow::actuation {
 
-/// The control of one axis and its nozzle: takes the newest plan, odometry and drive reading, and
-/// says each cycle where the axis shall be and whether the valve is open. Called from one thread;
-/// allocates nothing after construction. Times are of one clock.
+/// The control of one axis and its nozzle. It takes the newest plan, odometry and drive reading,
+/// and gives each cycle the axis' setpoint and the valve's level, as far as its ToolSafety permits.
+/// Called from one thread; allocates nothing after construction. Times are of one clock.
 class AxisController {
  public:
   /// Throws ConfigError for limits that are not positive or a nozzle without height or footprint.
   AxisController(const geometry::AxisModel& axis, const NozzleCalibration& calibration,
                  const AxisControllerParameters& parameters);
 
-  /// Replaces the route, ordered by `intended`. Targets that were sprayed or given up are passed
-  /// over. Fails with kOutOfRange (more than kMaxPlanStops: the first ones are taken) and with
-  /// kInvalidArgument (a position that is not finite, no targets: those stops are left out). An
-  /// empty plan is a valid one.
-  Status set_plan(Time stamp, std::span<const PlannedStop> stops);
+  /// The owner of the tool's safety. Inputs that the controller does not see itself are told to it
+  /// directly: heartbeat, valve, emergency stop, tool/enable, resets.
+  [[nodiscard]] ToolSafety& safety() { return safety_; }
+  [[nodiscard]] const ToolSafety& safety() const { return safety_; }
+
+  /// Replaces the route, ordered by `intended`. `now` is when the plan came. Targets that were
+  /// sprayed or given up are passed over. Fails with kOutOfRange (more than kMaxPlanStops: the
+  /// first ones are taken) and with kInvalidArgument (a position that is not finite, no targets:
+  /// those stops are left out). An empty plan is a valid one.
+  Status set_plan(Time now, std::span<const PlannedStop> stops);
   void set_odometry(const BaseState& base);
-  /// All protected plants near the tool, from the newest tracks. More than kMaxProtectedPlants, or
-  /// one that is not finite, makes the tool safe at the next update.
-  void set_protected(std::span<const ProtectedPlant> plants);
-  void set_reading(const AxisReading& reading);
-  /// While true, the tool is safe; released, it still waits for reset().
-  void set_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
-  void set_peer_lost(bool lost) { peer_lost_ = lost; }
-  void set_valve_fault(bool fault) { valve_fault_ = fault; }
+  /// All protected plants near the tool, from the newest tracks; `newest_image` is when those saw
+  /// the field. More than kMaxProtectedPlants, or one that is not finite, is a cause for the safe
+  /// state.
+  void set_protected(Time newest_image, std::span<const ProtectedPlant> plants);
+  /// The drive's reading of this cycle.
+  void set_reading(Time now, const AxisReading& reading);
   void set_dry_run(bool dry_run) { parameters_.dry_run = dry_run; }
   void set_calibration(const NozzleCalibration& calibration);
-  /// Leaves kSafe for kWaiting once the axis has stopped; a cause that is still there makes the
-  /// tool safe again at once.
-  void reset() { reset_requested_ = true; }
 
   /// One cycle at `now`; the axis command is the setpoint for now + period. @pre period > 0.
   [[nodiscard]] ControllerOutput update(Time now, Duration period);
@@ -73,12 +75,12 @@ class AxisController {
   };
 
   // Safety.
-  [[nodiscard]] SafetyCause find_cause(Time now) const;
-  [[nodiscard]] SafetyCause find_running_cause(Time now) const;
-  [[nodiscard]] bool everything_there(Time now) const;
-  void track_following_error(Time now);
-  void make_safe(Time now, SafetyCause cause);
-  void give_up_due_stops(Time now);
+  void obey_safety(Time now);
+  [[nodiscard]] bool seen_moving(Time now) const;
+  void stop_motion(Time now, SkipReason reason);
+  void report_safety_events();
+  void give_up_due_stops(Time now, SkipReason reason);
+  [[nodiscard]] AxisCommand axis_command(Time now, Duration period);
 
   // Route.
   void run(Time now, Duration period);
@@ -99,8 +101,8 @@ class AxisController {
   [[nodiscard]] MotionState motion_at(Time time) const;
   /// The drive may have moved or stopped by itself: go on from where it holds.
   void adopt_drive_setpoint(Time now);
-  /// Without setpoints for some periods the drive has begun to stop: brake with it, and go on from
-  /// there, instead of asking it to jump to where it would be by now.
+  /// Without setpoints for some periods the drive has begun to stop. Brake with it and go on from
+  /// there: it cannot jump to where the old profile would be by now.
   void follow_drive_after_gap(Time now, Duration period);
   void move_to(double q_m, Time now);
   /// On to the same target with the axis' full limits.
@@ -121,21 +123,12 @@ class AxisController {
 
   BoundedVector<PlannedStop, kMaxPlanStops> plan_;
   std::size_t next_stop_ = 0;
-  std::optional<Time> plan_stamp_;
   std::optional<BaseState> base_;
   std::optional<AxisReading> reading_;
   BoundedVector<ProtectedPlant, kMaxProtectedPlants> protected_;
-  bool odometry_valid_ = true;
-  bool protection_valid_ = true;
-  bool emergency_stop_ = false;
-  bool peer_lost_ = false;
-  bool valve_fault_ = false;
-  bool reset_requested_ = false;
-
-  ControllerMode mode_ = ControllerMode::kWaiting;
-  SafetyCause cause_ = SafetyCause::kNone;
-  Time cause_time_;
-  std::optional<Time> following_error_since_;
+  ToolSafety safety_;
+  GroundProgress progress_;
+  ControllerMode mode_ = ControllerMode::kWaiting;  ///< that was obeyed last
 
   std::optional<Time> last_update_;
   MotionProfile profile_;

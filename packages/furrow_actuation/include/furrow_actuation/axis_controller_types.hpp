@@ -7,6 +7,7 @@
 #include "furrow_actuation/axis_driver.hpp"
 #include "furrow_actuation/bounded_vector.hpp"
 #include "furrow_actuation/crossing.hpp"
+#include "furrow_actuation/tool_safety.hpp"
 #include "furrow_core/parameters.hpp"
 #include "furrow_core/time.hpp"
 
@@ -15,7 +16,7 @@ namespace furrow::actuation {
 inline constexpr std::size_t kMaxStopTargets = 16;
 inline constexpr std::size_t kMaxPlanStops = 64;
 inline constexpr std::size_t kMaxProtectedPlants = 512;
-inline constexpr std::size_t kMaxControllerEvents = 16;
+inline constexpr std::size_t kMaxControllerEvents = 48;
 
 using TargetIds = BoundedVector<std::int64_t, kMaxStopTargets>;
 
@@ -25,7 +26,7 @@ struct PlannedStop {
   Eigen::Vector2d p_F = Eigen::Vector2d::Zero();  ///< where the middle of the spray shall land
   TargetIds targets;                              ///< the tracks that it treats, at least one
   Time intended;                                  ///< when the plan means it to land; gives order
-  Time observed;                                  ///< the newest view of its targets
+  Time observed;  ///< the newest view of that target of the stop that was not seen for longest
   bool fire_while_moving = false;  ///< sprayed in passing, on the way to the stop after it
 };
 
@@ -35,23 +36,6 @@ struct ProtectedPlant {
   Eigen::Vector2d p_F = Eigen::Vector2d::Zero();
 };
 
-/// Why the tool was made safe. All but kNone are latched until reset().
-enum class SafetyCause {
-  kNone,
-  kEmergencyStop,
-  kPeerLost,         ///< the planner or the localization is gone
-  kPlanStale,        ///< no plan within its deadline
-  kOdometryStale,    ///< no odometry within its deadline
-  kOdometryInvalid,  ///< not finite
-  kReadingStale,     ///< the drive does not answer
-  kDriveFault,       ///< the drive reports a fault, or lost power while in use
-  kPositionLimit,    ///< measured position outside the limits
-  kFollowingError,
-  kValveFault,
-  kProtectionOverflow,  ///< more protected plants than can be checked
-};
-[[nodiscard]] std::string_view to_string(SafetyCause cause);
-
 /// Why a stop was not sprayed, or cut short.
 enum class SkipReason {
   kNone,
@@ -59,28 +43,23 @@ enum class SkipReason {
   kStale,          ///< its targets were not seen for too long
   kProtectedCrop,  ///< too near a protected plant, by the newest tracks
   kUnreachable,    ///< beyond the axis' reach
-  kFault,          ///< the tool was safe, or not running yet
+  kFault,          ///< the tool was in the safe state, or not running yet
   kStanding,       ///< the robot stood or reversed while spraying
+  kInactive,       ///< the tool was raised or switched off
 };
 [[nodiscard]] std::string_view to_string(SkipReason reason);
-
-enum class ControllerMode {
-  kWaiting,  ///< a plan, odometry or a ready drive is missing since the start or the last reset
-  kRunning,
-  kSafe,  ///< made safe; latched until reset()
-};
-[[nodiscard]] std::string_view to_string(ControllerMode mode);
 
 enum class ControllerEventKind {
   kSprayOpened,
   kSprayClosed,  ///< reason not kNone: cut short
   kStopSkipped,
-  kMadeSafe,
-  kReset,
+  kSafeState,     ///< the safe state was entered, or a further cause was latched
+  kReset,         ///< a latched cause was reset
+  kResetRefused,  ///< the cause was not gone when its reset was asked for
 };
 
 struct ControllerEvent {
-  ControllerEventKind kind = ControllerEventKind::kMadeSafe;
+  ControllerEventKind kind = ControllerEventKind::kSafeState;
   Time time;                 ///< of the command or decision
   std::int64_t stop_id = 0;  ///< sprays and skips
   TargetIds targets;         ///< sprays and skips
@@ -103,17 +82,16 @@ struct AxisControllerParameters {
   double protection_radius_m = 0.030;
   double rest_speed_mps = 0.05;
   double max_fire_speed_mps = 0.5;
-  double plan_deadline_s = 2.0;
-  double odometry_deadline_s = 0.10;
-  double reading_deadline_s = 0.02;
-  double max_target_age_s = 10.0;
-  double following_error_limit_m = 0.03;
-  double following_error_time_s = 0.02;
-  double position_margin_m = 0.002;
+  double max_target_age_s = 30.0;  ///< of motion: time that the robot stands does not count
+  double reverse_tolerance_m = 0.002;
   bool dry_run = false;
+  ToolSafetyParameters safety;
   CrossingParameters crossing;
 
   void visit(ParameterVisitor& v);
+
+ private:
+  void visit_firing(ParameterVisitor& v);
 };
 
 /// What the loop writes, in this order: first the valve, then the axis.
@@ -121,7 +99,7 @@ struct ControllerOutput {
   bool valve_open = false;
   AxisCommand axis;
   ControllerMode mode = ControllerMode::kWaiting;
-  SafetyCause cause = SafetyCause::kNone;
+  SafetyCause cause = SafetyCause::kNone;  ///< the first of those that are latched
   Time cause_time;
   ControllerEvents events;
 };

@@ -35,10 +35,17 @@ struct AxisReading {
   AxisState state = AxisState::kDisabled;
   DriveFault fault = DriveFault::kNone;
   bool homed = false;
+  bool powered = true;  ///< the motor may have torque; false only where the drive says so
   double position_m = 0.0;
   double velocity_mps = 0.0;
   double following_error_m = 0.0;  ///< commanded minus measured position
 };
+
+/// Powered, homed, and taking setpoints.
+[[nodiscard]] inline bool in_service(const AxisReading& reading) {
+  return (reading.state == AxisState::kReady || reading.state == AxisState::kMoving) &&
+         reading.homed;
+}
 
 enum class AxisCommandMode {
   kNone,     ///< nothing new; the axis holds or finishes what it does
@@ -57,14 +64,14 @@ struct AxisCommand {
 
 /// One axis drive, called by a loop: read(), then decide, then write(), each cycle. Requests change
 /// the state over the following cycles. No call blocks longer than the driver's own timeout. After
-/// an error the reading still holds the last known values, its state kFault.
+/// an error the reading keeps the last known values, its state kFault.
 class AxisDriver {
  public:
   virtual ~AxisDriver() = default;
 
   /// Fetches the drive's state as of `now`. kUnavailable: no connection.
   [[nodiscard]] virtual Status read(Time now, Duration period) = 0;
-  /// Hands over a command. kUnavailable: not powered, not homed, in fault, or no connection;
+  /// Sends a command. kUnavailable: not powered, not homed, in fault, or no connection;
   /// kOutOfRange: a position outside the limits. A refused command moves nothing.
   [[nodiscard]] virtual Status write(Time now, Duration period, const AxisCommand& command) = 0;
   [[nodiscard]] virtual const AxisReading& reading() const = 0;
@@ -76,10 +83,15 @@ class AxisDriver {
   [[nodiscard]] virtual Status disable(Time now) = 0;
   /// Looks for the reference; powered axes only.
   [[nodiscard]] virtual Status home(Time now) = 0;
-  /// Stops with the greatest deceleration and latches kEmergencyStop; from every state.
+  /// Quick stop: stops with the greatest deceleration and latches kEmergencyStop; from every state.
+  /// Connects again where the connection was lost. May be asked again until it is confirmed.
   [[nodiscard]] virtual Status emergency_stop(Time now) = 0;
   /// Out of kFault or kEmergencyStop to kDisabled, when the cause is gone; else kUnavailable.
   [[nodiscard]] virtual Status reset(Time now) = 0;
+
+  /// What of the device's own protections is not confirmed to be in force, for people; empty: all
+  /// of it is. Valid until the next call.
+  [[nodiscard]] virtual std::string_view unconfirmed() const { return {}; }
 };
 
 }  // namespace furrow::actuation

@@ -15,11 +15,11 @@ struct Object {
   std::uint8_t bytes = 2;
 };
 
-/// Telegrams of the Modbus TCP gateway to CANopen objects: function 43 (2Bh), MEI type 13 (0Dh), as
-/// the Modbus application protocol reserves them for CiA 309-2 and the dryve D1 manual lays them
-/// out. These are the bytes from the unit identifier on (what follows the length of the MBAP
-/// header): unit, function, MEI type, read/write, reserved, node, index high, index low,
-/// sub-index, three bytes of zero, byte count, data (lowest byte first).
+/// Telegrams of the Modbus TCP gateway to CANopen objects: function 43 (2Bh), MEI type 13 (0Dh).
+/// The Modbus application protocol reserves them for CiA 309-2; the layout is that of the dryve D1
+/// manual. The bytes begin at the unit identifier, after the length of the MBAP header. They are
+/// unit, function, MEI type, read/write, reserved, node, index high, index low, sub-index. Three
+/// bytes of zero, the byte count, and the data (lowest byte first) follow.
 inline constexpr std::uint8_t kFunction = 0x2B;
 inline constexpr std::uint8_t kMeiType = 0x0D;
 inline constexpr std::size_t kHeaderBytes = 13;

@@ -25,7 +25,7 @@ struct EmergencyInputParameters {
 };
 
 /// A line of a GPIO chip of this computer by libgpiod, requested as an input. Throws ConfigError
-/// when there is no such chip or line, or somebody else holds it.
+/// when there is no such chip or line, or another process holds it.
 [[nodiscard]] std::unique_ptr<GpioInput> open_gpio_input(
     const EmergencyInputParameters& parameters);
 

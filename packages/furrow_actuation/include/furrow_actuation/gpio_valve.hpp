@@ -24,7 +24,7 @@ struct GpioValveParameters {
 };
 
 /// A line of a GPIO chip of this computer by libgpiod, requested as an output at `initial_high`.
-/// Throws ConfigError when there is no such chip or line, or somebody else holds it.
+/// Throws ConfigError when there is no such chip or line, or another process holds it.
 [[nodiscard]] std::unique_ptr<GpioLine> open_gpio_line(const GpioValveParameters& parameters,
                                                        bool initial_high);
 

@@ -63,8 +63,13 @@ class NozzleUseMeter {
 class ValveDriver {
  public:
   virtual ~ValveDriver() = default;
-  /// The wanted level from `time` on. Fails with kUnavailable when the valve cannot be reached.
+  /// The wanted level from `time` on; success means that the device confirmed it. kUnavailable: not
+  /// confirmed, the level is not known. After a lost connection the valve is shut first, and an
+  /// opening fails.
   virtual Status write(Time time, bool open) = 0;
+  /// What of the device's own protections is not confirmed to be in force, for people; empty: all
+  /// of it is. Valid until the next call.
+  [[nodiscard]] virtual std::string_view unconfirmed() const { return {}; }
 };
 
 enum class ValveFault { kNone, kStuckOpen, kStuckClosed, kBlocked };

@@ -22,9 +22,9 @@ struct NozzleFit {
 };
 
 /// What a nozzle's calibration must become for its sprays to land on their aims. A delay that is
-/// too short puts the spray ahead by speed times delay, an offset by the same at every speed; so
-/// the delay is the slope over speed (median of the pairwise slopes: Theil 1950, Sen 1968) and the
-/// offset the median of what is left. Up to 29 % of wild measurements do no harm.
+/// too short puts the spray ahead by speed times delay, an offset by the same at every speed. So
+/// the delay is the slope over speed: the median of the pairwise slopes (Theil 1950, Sen 1968). The
+/// offset is the median of the remainder. Up to 29 % of wild measurements do no harm.
 /// kInvalidArgument: not finite, fewer than kMinLandingOffsets, or speeds less than
 /// kMinSpeedSpread_mps apart. kOutOfRange: no valve delay of at least 0 explains it.
 [[nodiscard]] Result<NozzleFit> fit_nozzle(const NozzleCalibration& used,

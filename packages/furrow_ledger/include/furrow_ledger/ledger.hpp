@@ -73,6 +73,7 @@ struct Summary {
   std::int64_t crops_hit = 0;
   std::int64_t sprays = 0;
   std::int64_t sprays_without_weed = 0;  ///< no weed's stem within the partial radius
+  std::int64_t sprays_uncommanded = 0;   ///< by a valve that is stuck open or leaks
   std::vector<std::int64_t> sprays_by_axis;
   /// Placement error: offset of the spray's centre from the stem, minus the planned offset of its
   /// aim from the track. One sample for each weed with a spray aimed at it, hit or not (the nearest

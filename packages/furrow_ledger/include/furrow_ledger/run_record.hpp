@@ -28,8 +28,9 @@ enum class Reason : std::uint8_t {
   kFault,          ///< planned, but the axis or valve did not deliver
   kPlacement,      ///< sprayed at, but the spray landed beside it
   kEndOfRun,       ///< the run ended before a tool came over it, or started beyond it
+  kInactive,       ///< the tool was raised or switched off
 };
-inline constexpr std::size_t kReasonCount = 12;
+inline constexpr std::size_t kReasonCount = 13;
 
 [[nodiscard]] std::string_view to_string(Reason reason);  ///< "low_priority"
 [[nodiscard]] std::optional<Reason> reason_from_string(std::string_view name);
@@ -45,6 +46,7 @@ struct Spray {
   Eigen::Vector2d sweep_F_m = Eigen::Vector2d::Zero();  ///< from first to last drop; drawn only
   Eigen::Vector2d aim_F_m = Eigen::Vector2d::Zero();    ///< where the centre was meant to be
   std::vector<std::int64_t> track_ids;                  ///< the tracks meant; several may share one
+  bool commanded = true;                                ///< by the driver; else the valve's fault
 };
 
 /// What the tracker knew of one track in the end. Give each track that ever was, once.

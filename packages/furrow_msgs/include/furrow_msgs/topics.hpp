@@ -128,6 +128,11 @@ struct ToolReset {
   [[nodiscard]] static const Topic& topic();
 };
 
+struct ToolEnable {
+  using Message = furrow_msgs::msg::ToolEnable;
+  [[nodiscard]] static const Topic& topic();
+};
+
 struct Markers {
   using Message = visualization_msgs::msg::MarkerArray;
   [[nodiscard]] static const Topic& topic();

@@ -1,21 +1,20 @@
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_msgs/diagnostic_msgs.h"
+#include "furrow_supervisor/resume_policy.hpp"
 
 namespace furrow::supervisor {
 
 /// What a supervisor sees of its processes: reads the diagnostics of all processes of a domain and
-/// tells what changes in them. With `resume` it lets tools start again that made themselves safe
-/// because they lost the planner, its plan or the odometry; no other cause is touched.
+/// tells what changes in them. With `resume` it resets what ResumePolicy permits, by axis and
+/// cause.
 class DeploymentHealth {
  public:
   DeploymentHealth(const dds::DdsParameters& parameters, bool resume);
@@ -33,13 +32,13 @@ class DeploymentHealth {
   void resume_tools();
 
   const bool resume_;
-  std::chrono::steady_clock::time_point last_reset_;
   std::mutex mutex_;
   std::map<std::string, std::uint8_t> levels_;  // by name; those at 0 are left out
-  std::set<std::string> cut_off_;               // names of tools that are safe for a lost peer
+  ResumePolicy policy_;                         // under mutex_
   std::vector<std::string> changes_;
   std::unique_ptr<dds::DdsTransport> transport_;
   std::unique_ptr<graph::TransportWriter> reset_;
+  std::unique_ptr<graph::TransportReader> states_;
   std::unique_ptr<graph::TransportReader> reader_;
 };
 

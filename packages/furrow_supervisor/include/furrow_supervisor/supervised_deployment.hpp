@@ -45,6 +45,7 @@ class SupervisedDeployment {
   graph::DeploymentSpec deployment_;
   std::string host_;
   dds::DdsParameters dds_;
+  std::vector<std::string> drivers_without_latches_;
   std::vector<Process> processes_;
 };
 
