@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "furrow_components/conversions.hpp"
@@ -7,6 +8,7 @@
 #include "furrow_graph/stamp.hpp"
 #include "furrow_localization/odometry_integrator.hpp"
 #include "furrow_localization/pose_filter.hpp"
+#include "furrow_localization/standstill_detector.hpp"
 #include "furrow_msgs/tf2_msgs.h"
 
 namespace furrow::components {
@@ -23,6 +25,7 @@ struct Parameters {
   double tf_rate_hz = 25.0;
   localization::OdometryIntegratorParameters odometry;
   localization::PoseFilterParameters filter;
+  localization::StandstillParameters standstill;
   GeoreferenceParameters georeference;
 
   void visit(ParameterVisitor& v) {
@@ -60,6 +63,8 @@ struct Parameters {
     odometry.visit(v);
     PrefixedVisitor filter_visitor(v, "filter_");
     filter.visit(filter_visitor);
+    PrefixedVisitor standstill_visitor(v, "standstill_");
+    standstill.visit(standstill_visitor);
     georeference.visit(v);
   }
 };
@@ -114,12 +119,15 @@ class Localization final : public graph::Component {
       : context_(context),
         parameters_(context.parameters<Parameters>()),
         estimator_(make_estimator(parameters_)),
+        standstill_(parameters_.standstill),
         georeference_(parameters_.georeference),
         odometry_out_(context.output<topics::RobotOdometry>()),
         transforms_out_(context.output<topics::Transforms>()) {
     started_ = parameters_.start == "parameters";
     context.input<topics::WheelOdometry>([this](const auto& message) { measured(*message); });
     context.input<topics::Imu>([this](const auto& message) {
+      standstill_.add_gyroscope(graph::from_msg(message->header().stamp()),
+                                message->angular_velocity().z());
       count("imu_", estimator_->add(localization::ImuYawRate{
                         graph::from_msg(message->header().stamp()), message->angular_velocity().z(),
                         told_or(message->angular_velocity_covariance()[8],
@@ -151,11 +159,14 @@ class Localization final : public graph::Component {
       }
       started_ = true;
     }
+    standstill_.add_wheels(wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps);
     const auto& told = message.twist().covariance();
-    count("wheels_", estimator_->add(localization::WheelOdometry{
-                         wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps,
-                         told_or(told[0], parameters_.speed_variance),
-                         told_or(told[35], parameters_.yaw_rate_variance)}));
+    localization::WheelOdometry measured{wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps,
+                                         told_or(told[0], parameters_.speed_variance),
+                                         told_or(told[35], parameters_.yaw_rate_variance)};
+    // Of a robot that stands more is known than its wheels measure.
+    if (standstill_.standing()) measured.speed_mps = measured.yaw_rate_radps = 0.0;
+    count("wheels_", estimator_->add(measured));
     publish_pose(wheels.stamp);
   }
 
@@ -171,6 +182,7 @@ class Localization final : public graph::Component {
     }
     newest_ = BaseOdometry{estimate->stamp, estimate->X_FB, estimate->speed_mps,
                            estimate->yaw_rate_radps};
+    hold_while_standing();
     nav_msgs::msg::Odometry message = to_msg(newest_, kFieldFrame);
     // Row-major 6x6 over (x, y, z, roll, pitch, yaw), as ROS has it.
     constexpr std::size_t kIndex[] = {0, 1, 5};
@@ -184,6 +196,21 @@ class Localization final : public graph::Component {
     message.twist().covariance()[35] = estimate->twist_covariance(1, 1);
     odometry_out_.publish(std::move(message));
     known_ = true;
+  }
+
+  // The pose of a robot that stands is held, and its twist is zero. What the sensors add meanwhile
+  // shows when it drives on.
+  void hold_while_standing() {
+    if (!standstill_.standing()) {
+      held_.reset();
+      return;
+    }
+    if (!held_) {
+      held_ = newest_.X_FB;
+      context_.count("standstills");
+    }
+    newest_.X_FB = *held_;
+    newest_.speed_mps = newest_.yaw_rate_radps = 0.0;
   }
 
   void publish_transform(Time /*now*/) const {
@@ -201,6 +228,8 @@ class Localization final : public graph::Component {
   graph::Context& context_;
   Parameters parameters_;
   std::unique_ptr<localization::PoseEstimator> estimator_;
+  localization::StandstillDetector standstill_;
+  std::optional<geometry::Pose2> held_;  ///< while the robot stands
   Georeference georeference_;
   graph::Output<topics::RobotOdometry> odometry_out_;
   graph::Output<topics::Transforms> transforms_out_;

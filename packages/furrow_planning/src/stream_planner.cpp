@@ -12,6 +12,10 @@ namespace {
 
 constexpr double kRememberBehind_m = 3.0;  ///< finished targets are known this long
 constexpr double kForgetEvery_m = 0.5;
+/// Slower than this a robot is about to stand, or begins to drive: plans hold for its last speed.
+constexpr double kStandingSpeed_mps = 0.02;
+/// A target that is first seen while the robot is behind, this near to a treated one, is the same.
+constexpr double kSamePlant_m = 0.02;
 constexpr double kMoved_m = 1e-4;  ///< a target that moved less, and kept its weight, did not
 
 Error invalid(std::string message) {
@@ -79,6 +83,10 @@ Status StreamPlanner::update(const Target& target) {
     return invalid("target " + std::to_string(target.id) +
                    " has a position or weight that is not finite, or a negative weight");
   }
+  if (!known && treated_before(target)) {
+    outcomes_.push_back({.id = target.id, .decision = Decision::kDuplicate});
+    return {};
+  }
   if (!known) {
     if (records_.size() >= static_cast<std::size_t>(parameters_.max_targets)) {
       outcomes_.push_back({.id = target.id, .decision = Decision::kInvalid});
@@ -97,6 +105,16 @@ Status StreamPlanner::update(const Target& target) {
     it->target = target;
   }
   return {};
+}
+
+// A robot that reversed sees plants again that were treated; the tracker may have forgotten them.
+bool StreamPlanner::treated_before(const Target& target) const {
+  return behind_m_ > 0.0 && std::ranges::any_of(records_, [&](const Record& record) {
+           const bool treated =
+               record.phase == Phase::kCommitted ||
+               (record.phase == Phase::kFinished && record.decision == Decision::kTreat);
+           return treated && (record.target.p_F - target.p_F).norm() < kSamePlant_m;
+         });
 }
 
 bool StreamPlanner::remove(TargetId id) {
@@ -181,15 +199,13 @@ Status StreamPlanner::advance(const RobotState& robot, double seen_until_x_m) {
   if (!std::isfinite(robot.x_m) || !std::isfinite(robot.y_m) || !std::isfinite(seen_until_x_m)) {
     return invalid("the robot's state is not finite");
   }
-  if (!speeds_ && parameters_.speed_source == "measured" &&
-      !(std::isfinite(robot.speed_mps) && robot.speed_mps > 0.0)) {
-    return invalid("the robot's speed is not positive");
-  }
-  if (placed_ && robot.x_m < robot_.x_m) {
-    return invalid("the robot went backwards along the row");
+  const bool onward = !placed_ || robot.x_m >= robot_.x_m;
+  behind_m_ = onward ? 0.0 : robot_.x_m - robot.x_m;
+  seen_until_x_m_ = std::max(seen_until_x_m_, seen_until_x_m);
+  if (!onward) {
+    return {};
   }
   if (!placed_) {
-    placed_ = true;
     for (AxisRecord& axis : axes_) {
       axis.rest.free_from_x_m = robot.x_m;
     }
@@ -197,8 +213,12 @@ Status StreamPlanner::advance(const RobotState& robot, double seen_until_x_m) {
         std::floor(robot.x_m / parameters_.segment_length_m) * parameters_.segment_length_m;
     forgotten_x_m_ = robot.x_m;
   }
+  const double known_speed_mps = placed_ ? robot_.speed_mps : parameters_.speed_mps;
   robot_ = robot;
-  seen_until_x_m_ = std::max(seen_until_x_m_, seen_until_x_m);
+  if (!(std::isfinite(robot.speed_mps) && robot.speed_mps > kStandingSpeed_mps)) {
+    robot_.speed_mps = known_speed_mps;
+  }
+  placed_ = true;
   commit_due_stops();
   pass_stops();
   finish_passed_targets();

@@ -56,6 +56,7 @@ class StreamPlanner final : public ObservationView {
   };
 
   [[nodiscard]] Record* find(TargetId id);
+  [[nodiscard]] bool treated_before(const Target& target) const;
   [[nodiscard]] double planning_speed_mps() const;
   void commit_due_stops();
   void commit(AxisRecord& axis, const Stop& stop);
@@ -78,7 +79,8 @@ class StreamPlanner final : public ObservationView {
   std::vector<AxisSpec> specs_;
   std::vector<Record> records_;            ///< by id
   std::vector<ProtectedPlant> protected_;  ///< by id
-  RobotState robot_;
+  RobotState robot_;                       ///< at the furthest point that it reached
+  double behind_m_ = 0.0;                  ///< how far the robot is behind that point now
   std::optional<SpeedProfile> speeds_;
   bool placed_ = false;
   bool changed_ = false;

@@ -101,12 +101,72 @@ TEST_P(BothViews, AllAxesFailedIsAFault) {
   }
 }
 
+TEST_P(BothViews, ARobotThatStandsOrReversesKeepsItsPlan) {
+  const auto view = make_observation_view(parameters_for(GetParam()), axes(2));
+  const auto targets = field(4.0, 2.0, 5);
+  for (const Target& target : targets) ASSERT_TRUE(view->update(target).ok());
+  double x_m = 0.0;
+  for (; x_m < 1.0; x_m += 0.05) {
+    ASSERT_TRUE(view->advance({.x_m = x_m}, x_m + 1.2).ok());
+    ASSERT_TRUE(view->replan().ok());
+  }
+  std::vector<TargetOutcome> outcomes;
+  view->take_outcomes(outcomes);
+  outcomes.clear();
+  const std::size_t stops = view->plan().routes[0].size() + view->plan().routes[1].size();
+  ASSERT_GT(stops, 0u);
+  for (const double back_m : {0.0, 0.003, 0.001, 0.3, 2.0, 1.0, 0.001}) {
+    ASSERT_TRUE(view->advance({.x_m = x_m - 0.05 - back_m, .speed_mps = -0.1}, 1.0).ok());
+    ASSERT_TRUE(view->replan().ok());
+    EXPECT_EQ(view->plan().routes[0].size() + view->plan().routes[1].size(), stops) << back_m;
+  }
+  view->take_outcomes(outcomes);
+  EXPECT_TRUE(outcomes.empty());
+}
+
+TEST(StandingRobot, WithTheMeasuredSpeedPlansHoldForItsLastSpeed) {
+  PlannerParameters parameters = parameters_for("rolling");
+  parameters.speed_source = "measured";
+  const auto view = make_observation_view(parameters, axes(2));
+  ASSERT_TRUE(view->update({.id = 1, .p_F = {0.9, 0.1}}).ok());
+  ASSERT_TRUE(view->advance({.x_m = 0.0, .speed_mps = 0.4}, 1.0).ok());
+  ASSERT_TRUE(view->replan().ok());
+  const double depart_x_m = view->plan().routes[0].size() == 1
+                                ? view->plan().routes[0][0].depart_x_m
+                                : view->plan().routes[1][0].depart_x_m;
+  ASSERT_TRUE(view->advance({.x_m = 0.001, .speed_mps = 0.0}, 1.0).ok());
+  ASSERT_TRUE(view->update({.id = 2, .p_F = {3.0, 0.1}}).ok());
+  ASSERT_TRUE(view->replan().ok());
+  const Plan& plan = view->plan();
+  bool found = false;
+  for (const auto& route : plan.routes) {
+    for (const Stop& stop : route) found = found || std::abs(stop.depart_x_m - depart_x_m) < 0.01;
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST(ReversingRobot, ATreatedPlantUnderANewIdIsNotPlannedAgain) {
+  const auto view = make_observation_view(parameters_for("rolling"), axes(2));
+  ASSERT_TRUE(view->update({.id = 1, .p_F = {0.9, 0.1}}).ok());
+  for (double x_m = 0.0; x_m < 1.2; x_m += 0.02) {
+    ASSERT_TRUE(view->advance({.x_m = x_m}, x_m + 1.0).ok());
+    ASSERT_TRUE(view->replan().ok());
+  }
+  ASSERT_TRUE(view->advance({.x_m = 0.2, .speed_mps = -0.3}, 1.0).ok());
+  ASSERT_TRUE(view->update({.id = 77, .p_F = {0.905, 0.1}}).ok());
+  ASSERT_TRUE(view->replan().ok());
+  std::vector<TargetOutcome> outcomes;
+  view->take_outcomes(outcomes);
+  const auto again = std::ranges::find(outcomes, 77, &TargetOutcome::id);
+  ASSERT_NE(again, outcomes.end());
+  EXPECT_EQ(again->decision, Decision::kDuplicate);
+}
+
 TEST_P(BothViews, BadInputIsAnError) {
   const auto view = make_observation_view(parameters_for(GetParam()), axes(2));
   EXPECT_FALSE(view->replan().ok());  // the robot's place is not known yet
   EXPECT_FALSE(view->advance({.x_m = kNan}, 1.0).ok());
   ASSERT_TRUE(view->advance({.x_m = 0.0}, 1.0).ok());
-  EXPECT_FALSE(view->advance({.x_m = -0.1}, 1.0).ok());
   EXPECT_FALSE(view->update({.id = 1, .p_F = {kNan, 0.0}}).ok());
   EXPECT_FALSE(view->update({.id = 2, .p_F = {0.5, 0.0}, .weight = -1.0}).ok());
   EXPECT_FALSE(view->update_protected({.id = 1, .p_F = {0.5, kNan}}).ok());

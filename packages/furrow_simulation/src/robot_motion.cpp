@@ -158,8 +158,12 @@ void RobotMotion::begin_cell() {
                                 parameters_.speed_correlation_s, speed_random_);
   yaw_noise_radps_ = next_noise(yaw_noise_radps_, parameters_.yaw_noise_radps,
                                 parameters_.yaw_correlation_s, yaw_random_);
+  const double command_mps =
+      limited(commanded_speed_mps((grid_.time + kGrid - start_).to_seconds()));
+  // Brakes hold a robot that is to stand: the disturbance fades out below a crawl.
+  constexpr double kCrawl_mps = 0.05;
   const double next_wheel_mps =
-      limited(commanded_speed_mps((grid_.time + kGrid - start_).to_seconds())) + speed_noise_mps_;
+      command_mps + std::min(1.0, std::abs(command_mps) / kCrawl_mps) * speed_noise_mps_;
   const double next_speed_mps = next_wheel_mps * (1.0 - parameters_.slip);
   grid_.acceleration_mps2 = (next_speed_mps - grid_.speed_mps) / kGrid.to_seconds();
 

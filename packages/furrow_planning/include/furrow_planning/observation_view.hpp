@@ -46,8 +46,11 @@ class ObservationView {
   /// Measured rest position of an axis that is not at its last stop.
   virtual Status set_axis_position(std::size_t axis, double position_m) = 0;
 
-  /// Moves the robot. All plants with x < `seen_until_x_m` are taken as seen. Error: not finite,
-  /// speed <= 0 with the measured speed in use, or backwards (the state is then kept).
+  /// Moves the robot. All plants with x < `seen_until_x_m` are taken as seen. A robot that stands
+  /// or reverses keeps its plan: the state stays at the furthest point that it reached, and with
+  /// the measured speed in use at the last speed that it drove there. A target that is first given
+  /// while it is behind that point, beside one that was treated, is the same plant: kDuplicate.
+  /// Error: not finite (the state is then kept).
   virtual Status advance(const RobotState& robot, double seen_until_x_m) = 0;
   /// Updates the plan. Returns whether it was replanned.
   [[nodiscard]] virtual Result<bool> replan() = 0;
