@@ -37,6 +37,7 @@ struct Parameters {
   simulation::GnssParameters gnss;
   GeoreferenceParameters georeference;
   simulation::SprayParameters spray;
+  simulation::ValveFaultParameters valve_faults;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
@@ -93,6 +94,8 @@ struct Parameters {
     georeference.visit(v);
     PrefixedVisitor spray_visitor(v, "spray_");
     spray.visit(spray_visitor);
+    PrefixedVisitor fault_visitor(v, "valve_fault_");
+    valve_faults.visit(fault_visitor);
   }
 };
 
@@ -122,6 +125,7 @@ class RobotSimulator final : public graph::Component {
     d.doc("Simulated robot: true motion, wheel odometry, IMU, GNSS, and where sprays land.")
         .parameters<Parameters>()
         .input<topics::AxisEvent>(graph::Need::kOptional)
+        .input<topics::AxisState>(graph::Need::kOptional)
         .input<topics::TrueField>(graph::Need::kOptional)
         .input<topics::SpeedRequest>(graph::Need::kOptional)
         .output<topics::TrueOdometry>()
@@ -136,7 +140,7 @@ class RobotSimulator final : public graph::Component {
       : context_(context),
         parameters_(context.parameters<Parameters>()),
         landing_(context, geometry::load_tool_model(parameters_.tool_file), parameters_.spray,
-                 Duration::seconds(2.0 / parameters_.rate_hz)),
+                 parameters_.valve_faults, Duration::seconds(2.0 / parameters_.rate_hz)),
         truth_(context.output<topics::TrueOdometry>()),
         wheels_out_(context.output<topics::WheelOdometry>()),
         imu_out_(context.output<topics::Imu>()),
@@ -152,6 +156,7 @@ class RobotSimulator final : public graph::Component {
       length_m_ = std::min(parameters_.length_m, field->length_m());
     });
     context.input<topics::AxisEvent>([this](const auto& event) { landing_.take(*event); });
+    context.input<topics::AxisState>([this](const auto& state) { landing_.take(*state); });
     context.input<topics::SpeedRequest>([this](const auto& request) { take(*request); });
     context.every(Duration::seconds(1.0 / parameters_.rate_hz), [this](Time now) { step(now); });
     context.every(Duration::seconds(1.0 / parameters_.imu_rate_hz),

@@ -10,15 +10,29 @@
 namespace furrow::components {
 
 SprayLanding::SprayLanding(graph::Context& context, geometry::ToolModel tool,
-                           const simulation::SprayParameters& parameters, Duration odometry_gap)
+                           const simulation::SprayParameters& parameters,
+                           const simulation::ValveFaultParameters& faults, Duration odometry_gap)
     : context_(context),
       tool_(std::move(tool)),
       parameters_(parameters),
       odometry_gap_(odometry_gap),
-      out_(context.output<msgs::topics::TrueSpray>()) {
+      out_(context.output<msgs::topics::TrueSpray>()),
+      faults_(faults) {
   for (std::size_t i = 0; i < tool_.axes.size(); ++i) {
-    valves_.emplace(tool_.axes[i].name, simulation::SimulatedValve(parameters_, context.seed(), i));
+    valves_.emplace(tool_.axes[i].name,
+                    Valve{simulation::SimulatedValve(parameters_, context.seed(), i), {}, {}, {}});
   }
+}
+
+void SprayLanding::take(const furrow_msgs::msg::AxisState& state) {
+  const auto valve = valves_.find(state.axis());
+  if (valve == valves_.end()) return;
+  valve->second.axis =
+      AxisPoint{graph::from_msg(state.header().stamp()), state.position_m(), state.velocity_mps()};
+}
+
+simulation::ValveFault SprayLanding::fault_of(const std::string& axis, Time time) const {
+  return start_ ? faults_.at(axis, time - *start_) : simulation::ValveFault::kNone;
 }
 
 void SprayLanding::take(const furrow_msgs::msg::AxisEvent& event) {
@@ -28,10 +42,17 @@ void SprayLanding::take(const furrow_msgs::msg::AxisEvent& event) {
     context_.count("events_of_unknown_axes");
     return;
   }
-  const auto window =
-      valves_.at(event.axis())
-          .actuate(graph::from_msg(event.opened()), graph::from_msg(event.closed()));
-  if (!window || !window->close) {
+  Valve& valve = valves_.at(event.axis());
+  const Time opened = graph::from_msg(event.opened());
+  const Time closed = graph::from_msg(event.closed());
+  valve.valve.set_fault(fault_of(event.axis(), opened));
+  auto window = valve.valve.actuate(opened, closed);
+  if (window && !window->close) {
+    // It stays open: this spray is as long as it was meant to be, the rest is not commanded.
+    if (!valve.opened_in_fault) valve.opened_in_fault = closed;
+    window->close = closed;
+  }
+  if (!window || *window->close <= window->open) {
     context_.count("openings_without_spray");
     return;
   }
@@ -52,7 +73,43 @@ bool SprayLanding::move(const nav_msgs::msg::Odometry& truth) {
     if (has_left(spray)) land(spray);
   }
   std::erase_if(falling_, has_left);
+  if (!start_) start_ = base.stamp;
+  if (!faults_.empty()) release_uncommanded(base.stamp);
   return true;
+}
+
+void SprayLanding::release_uncommanded(Time now) {
+  for (const geometry::AxisModel& model : tool_.axes) {
+    Valve& valve = valves_.at(model.name);
+    const simulation::ValveFault fault = fault_of(model.name, now);
+    const bool leaks = fault == simulation::ValveFault::kLeaking;
+    if (fault != simulation::ValveFault::kStuckOpen) valve.opened_in_fault.reset();
+    if ((!leaks && !valve.opened_in_fault) || !valve.axis) {
+      valve.released_until.reset();
+      continue;
+    }
+    if (!valve.released_until) valve.released_until = valve.opened_in_fault.value_or(now);
+    for (; *valve.released_until + kSlice <= now; *valve.released_until += kSlice) {
+      land_slice(model, *valve.axis, *valve.released_until, *valve.released_until + kSlice);
+    }
+  }
+}
+
+void SprayLanding::land_slice(const geometry::AxisModel& model, const AxisPoint& axis, Time from,
+                              Time to) {
+  const auto at = [&](Time time) {
+    const double ahead_s = (time - axis.time).to_seconds();
+    return nozzle(model, {time, axis.position_m + axis.velocity_mps * ahead_s, axis.velocity_mps});
+  };
+  const auto first = at(from);
+  const auto last = at(to);
+  if (!first || !last) return;
+  context_.count("uncommanded_sprays");
+  furrow_msgs::msg::AxisEvent event;
+  event.axis(model.name);
+  const auto patch = simulation::spray_patch(*first, *last, model.nozzle.height_m, parameters_);
+  event.aim(to_point(patch.p_F_m));
+  publish(event, patch, model.nozzle.footprint_radius_m);
 }
 
 void SprayLanding::land(const Falling& spray) {

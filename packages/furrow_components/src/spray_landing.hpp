@@ -11,19 +11,24 @@
 #include "furrow_graph/context.hpp"
 #include "furrow_msgs/furrow_msgs.h"
 #include "furrow_simulation/spray.hpp"
+#include "furrow_simulation/valve_faults.hpp"
 
 namespace furrow::components {
 
 /// Lets what the valves release fall to the ground under a robot that moves on, and publishes where
-/// it lands.
+/// it lands. The commands pass the simulated valves, which may have faults: what a valve releases
+/// without a command lands as sprays of stop 0 without tracks, a slice of kSlice each.
 class SprayLanding {
  public:
-  /// `odometry_gap`: how far the truth may be extrapolated. The context must outlive it.
+  /// `odometry_gap`: how far the ground truth may be extrapolated. The context must outlive it.
   SprayLanding(graph::Context& context, geometry::ToolModel tool,
-               const simulation::SprayParameters& parameters, Duration odometry_gap);
+               const simulation::SprayParameters& parameters,
+               const simulation::ValveFaultParameters& faults, Duration odometry_gap);
 
   /// A valve was opened and closed, when the event says so.
   void take(const furrow_msgs::msg::AxisEvent& event);
+  /// Where an axis is, for what its valve releases without a command.
+  void take(const furrow_msgs::msg::AxisState& state);
   /// The true motion, in order of time; then what has left its nozzle by then lands. False when the
   /// odometry is refused.
   bool move(const nav_msgs::msg::Odometry& truth);
@@ -37,7 +42,20 @@ class SprayLanding {
     const geometry::AxisModel* axis;
   };
 
+  static constexpr Duration kSlice = Duration::milliseconds(20);
+
+  /// A valve, and what it releases without a command.
+  struct Valve {
+    simulation::SimulatedValve valve;
+    std::optional<Time> opened_in_fault;  ///< stuck open since then
+    std::optional<Time> released_until;   ///< of an uncommanded flow
+    std::optional<AxisPoint> axis;        ///< newest
+  };
+
+  [[nodiscard]] simulation::ValveFault fault_of(const std::string& axis, Time time) const;
+  void release_uncommanded(Time now);
   void land(const Falling& spray);
+  void land_slice(const geometry::AxisModel& model, const AxisPoint& axis, Time from, Time to);
   void publish(const furrow_msgs::msg::AxisEvent& event, const simulation::SprayPatch& patch,
                double radius_m) const;
   [[nodiscard]] std::optional<simulation::NozzleState> nozzle(const geometry::AxisModel& model,
@@ -49,7 +67,9 @@ class SprayLanding {
   Duration odometry_gap_;
   graph::Output<msgs::topics::TrueSpray> out_;
   PoseBuffer truth_{Duration::seconds(2.0)};
-  std::map<std::string, simulation::SimulatedValve> valves_;
+  simulation::ValveFaultSchedule faults_;
+  std::optional<Time> start_;
+  std::map<std::string, Valve> valves_;
   std::vector<Falling> falling_;
 };
 

@@ -14,6 +14,7 @@ struct Parameters {
   std::string tool_file;
   double rate_hz = 100.0;
   simulation::SprayParameters spray;
+  simulation::ValveFaultParameters valve_faults;
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
@@ -25,6 +26,8 @@ struct Parameters {
             rate_hz);
     PrefixedVisitor spray_visitor(v, "spray_");
     spray.visit(spray_visitor);
+    PrefixedVisitor fault_visitor(v, "valve_fault_");
+    valve_faults.visit(fault_visitor);
   }
 };
 
@@ -36,17 +39,19 @@ class SpraySimulator final : public graph::Component {
         .parameters<Parameters>()
         .input<topics::TrueOdometry>(graph::Need::kOptional)
         .input<topics::AxisEvent>(graph::Need::kOptional)
+        .input<topics::AxisState>(graph::Need::kOptional)
         .output<topics::TrueSpray>();
   }
 
   explicit SpraySimulator(graph::Context& context)
       : parameters_(context.parameters<Parameters>()),
         landing_(context, geometry::load_tool_model(parameters_.tool_file), parameters_.spray,
-                 Duration::seconds(2.0 / parameters_.rate_hz)) {
+                 parameters_.valve_faults, Duration::seconds(2.0 / parameters_.rate_hz)) {
     context.input<topics::TrueOdometry>([this, &context](const auto& truth) {
       if (!landing_.move(*truth)) context.count("bad_odometry");
     });
     context.input<topics::AxisEvent>([this](const auto& event) { landing_.take(*event); });
+    context.input<topics::AxisState>([this](const auto& state) { landing_.take(*state); });
   }
 
  private:

@@ -76,8 +76,9 @@ SimulatedValve::SimulatedValve(const SprayParameters& parameters, std::uint64_t 
     : parameters_(parameters), random_(seed, "valve", index) {}
 
 std::optional<ValveWindow> SimulatedValve::actuate(Time open_command, Time close_command) {
-  const auto answer = [this](Time command, double delay_s) {
-    const double late_s = delay_s + parameters_.delay_jitter_s * random_.normal(0.0, 1.0);
+  const double slow_s = fault_ == ValveFault::kSlow ? kSlowValve_s : 0.0;
+  const auto answer = [this, slow_s](Time command, double delay_s) {
+    const double late_s = delay_s + slow_s + parameters_.delay_jitter_s * random_.normal(0.0, 1.0);
     return command + Duration::seconds(std::max(late_s, 0.0));
   };
   const Time open = answer(open_command, parameters_.open_delay_s);

@@ -54,9 +54,13 @@ enum class ValveFault : std::uint8_t {
   kStuckShut,  ///< does not open
   kStuckOpen,  ///< once open, does not close
   kBlocked,    ///< moves, but nothing comes out
+  kSlow,       ///< opens and shuts kSlowValve_s later
+  kLeaking,    ///< drops leave at all times
 };
+inline constexpr double kSlowValve_s = 0.050;
 
-/// When drops leave the nozzle. `close` is absent while the valve is stuck open.
+/// When drops leave the nozzle. `close` is absent while the valve is stuck open. What a leaking
+/// valve loses between its openings is not in it.
 struct ValveWindow {
   Time open;
   std::optional<Time> close;
