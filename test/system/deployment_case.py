@@ -15,8 +15,9 @@ class Up:
     """A `furrow up` that runs, with what it printed so far."""
 
     def __init__(self, folder, out, *arguments):
+        graph = [] if "--graph" in arguments else GRAPH
         self.process = subprocess.Popen(
-            [furrow_program(), "up", *GRAPH, "--dds", f"domain_id={domain()}", "--out", str(out),
+            [furrow_program(), "up", *graph, "--dds", f"domain_id={domain()}", "--out", str(out),
              *map(str, arguments)],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             text=True)

@@ -1,0 +1,96 @@
+"""A robot that stands, rolls back and drives on: nothing is latched, nothing is sprayed meanwhile, and
+no more weeds are missed than without the stop. And valves that are at fault, as the ledger tells it."""
+
+import json
+import unittest
+
+from furrow_case import FurrowCase
+
+GRAPH = ("--graph", "weeding_true_detections", "--length", 6)
+STOP_S = 60
+# Speeds over time: the stop begins over the weeds, at some 3 m of the row.
+STOP = ([0, 9, 10, 10 + STOP_S, 11 + STOP_S, 300], [0.5, 0.5, 0.0, 0.0, 0.5, 0.5])
+ROLL_BACK = ([0, 9, 10, 12, 12.5, 14.5, 15, 20, 21, 300],
+             [0.5, 0.5, 0.0, 0.0, -0.12, -0.12, 0.0, 0.0, 0.5, 0.5])
+THREE_STOPS = ([0, 7, 8, 13, 14, 16, 17, 22, 23, 25, 26, 31, 32, 300],
+               [0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0.5])
+
+
+def profile(times_s, speeds_mps):
+    return ("--set", f"robot.profile_time_s={list(times_s)}",
+            "--set", f"robot.profile_speed_mps={list(speeds_mps)}")
+
+
+class StandstillTest(FurrowCase):
+    def sprays_s(self, out):
+        features = json.loads((out / "as_applied.geojson").read_text())["features"]
+        return sorted(feature["properties"]["time_s"] for feature in features)
+
+    def compare(self, name, journey, standing):
+        """`standing`: stretches of time in which the robot stands or reverses."""
+        for seed in (1, 2):
+            with self.subTest(journey=name, seed=seed):
+                straight = self.run_graph(*GRAPH, "--seed", seed, out=self.folder / f"s{seed}")
+                out = self.folder / f"{name}{seed}"
+                stopped = self.run_graph(*GRAPH, "--seed", seed, *profile(*journey), out=out)
+                print(f"{name}, seed {seed}: loss {straight['loss_pct']:.1f} % without, "
+                      f"{stopped['loss_pct']:.1f} % with it")
+                self.assertNotIn("Safe states", (out / "report.html").read_text())
+                self.assertLessEqual(stopped["loss_pct"], straight["loss_pct"] + 1.0 + 1e-9)
+                self.assertLessEqual(stopped["crops_hit"], straight["crops_hit"])
+                for from_s, to_s in standing:
+                    inside = [t for t in self.sprays_s(out) if from_s <= t <= to_s]
+                    self.assertEqual(inside, [])
+
+    def test_a_stop_of_a_minute(self):
+        self.compare("stop", STOP, [(10, 10 + STOP_S)])
+
+    def test_rolling_back_by_30_cm(self):
+        self.compare("roll", ROLL_BACK, [(10, 20)])
+
+    def test_three_stops(self):
+        self.compare("three", THREE_STOPS, [(8, 13), (17, 22), (26, 31)])
+
+
+class ValveFaultTest(FurrowCase):
+    def with_fault(self, kind, **window):
+        from_s, until_s = window.get("from_s", 0), window.get("until_s", 1000)
+        return self.run_graph(*GRAPH, "--seed", 3, "--set", 'robot.valve_fault_axis=["axis_2"]',
+                              "--set", f'robot.valve_fault_kind=["{kind}"]',
+                              "--set", f"robot.valve_fault_from_s=[{from_s}]",
+                              "--set", f"robot.valve_fault_until_s=[{until_s}]",
+                              out=self.folder / kind)
+
+    def test_a_valve_that_gives_nothing_leaves_its_weeds_as_faults(self):
+        sound = self.run_graph(*GRAPH, "--seed", 3, out=self.folder / "sound")
+        for kind in ("stuck_shut", "blocked"):
+            with self.subTest(kind=kind):
+                summary = self.with_fault(kind)
+                self.assertEqual(summary["sprays_by_axis"][1], 0)
+                self.assertGreater(summary["missed_by_reason"]["fault"],
+                                   sound["missed_by_reason"]["fault"])
+
+    def test_a_valve_that_does_not_shut_is_told_by_sprays_without_a_command(self):
+        for kind in ("stuck_open", "leaking"):
+            with self.subTest(kind=kind):
+                summary = self.with_fault(kind, from_s=6, until_s=9)
+                # A slice each 20 ms.
+                self.assertGreater(summary["sprays_uncommanded"], 50)
+                self.assertLessEqual(summary["sprays_uncommanded"], 150)
+
+    def test_a_slow_valve_sprays_behind_its_aim(self):
+        sound = self.run_graph(*GRAPH, "--seed", 3, out=self.folder / "sound")
+        slow = self.with_fault("slow")
+        # 50 ms at 0.5 m/s.
+        self.assertGreater(slow["placement_error_p95_mm"], sound["placement_error_p95_mm"] + 15)
+
+    def test_a_fault_that_does_not_exist_is_a_configuration_error(self):
+        self.assert_refused(("run", "--no-wire", "--out", self.out, "--set",
+                             'robot.valve_fault_axis=["axis_2"]', "--set",
+                             'robot.valve_fault_kind=["melted"]', "--set",
+                             "robot.valve_fault_from_s=[0]", "--set",
+                             "robot.valve_fault_until_s=[9]"), "melted", "stuck_open")
+
+
+if __name__ == "__main__":
+    unittest.main()
