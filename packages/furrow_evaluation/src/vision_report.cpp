@@ -125,8 +125,8 @@ std::string to_html(const VisionReport& report) {
   ledger::HtmlPage page("Seeing plants",
                         "Furrow " + std::string(version()) + ", detectors on data sets");
   page.section("Figures",
-               "IoU of pixels, summed over the images; average precision by COCO's procedure over "
-               "crop and weed; panoptic quality; errors of stems and areas of plants that were "
+               "IoU of pixels, summed over the images. Average precision by COCO's procedure over "
+               "crop and weed. Panoptic quality. Errors of stems and areas of plants that were "
                "found with a mask IoU of at least 0.5. Crops sprayed: a weed's stem in the crop's "
                "mask, or a footprint of 25 mm on its stem. Weeds found: a weed's stem within "
                "15 mm. False: detections on no plant. A dash: the data set does not say.");

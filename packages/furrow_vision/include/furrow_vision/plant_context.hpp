@@ -58,7 +58,8 @@ struct ContextReport {
 /// Decides the class by the whole plant and its surroundings in images whose plants look unlike
 /// those that the network was trained on.
 ///
-/// - Plants that are not greener than the soil by `greenness_min` are dropped (stones, straw, moss).
+/// - Plants that are not greener than the soil by `greenness_min` are dropped (stones, straw,
+/// moss).
 ///   Where vegetation is rare, most of what looks like it is none: a plant whose stem is not seen
 ///   must there be greener by `rare_greenness_min`.
 /// - The familiarity of the image follows from the mean certainty of its stems: the network hardly
