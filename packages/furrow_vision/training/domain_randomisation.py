@@ -19,7 +19,7 @@ def randomise(rng, bgr, ids, plants, crops):
         image = recolour_plants(rng, image, ids, plants, crops)
     if rng.random() < 0.5:
         image = recolour_soil(rng, image, ids)
-    if rng.random() < 0.35:
+    if rng.random() < 0.25:
         image = cast_shadows(rng, image, ids)
     if rng.random() < 0.45:
         image, ids = scatter_objects(rng, image, ids)
@@ -83,14 +83,14 @@ def recolour_plants(rng, image, ids, plants, crops):
 def recolour_soil(rng, image, ids):
     """Another soil, and patches of moss, moisture or dust. Green patches stay soil."""
     soil = ids < 0
-    gain = np.exp(rng.normal(0.0, [0.18, 0.06, 0.12])) * np.exp(rng.normal(0.0, 0.25))
+    gain = np.exp(rng.normal(0.0, [0.09, 0.03, 0.07])) * np.exp(rng.normal(0.0, 0.25))
     pixels = image[soil] * gain.astype(np.float32)
     if rng.random() < 0.5:  # rougher or smoother than it was
         mean = cv2.blur(image, (15, 15))[soil] * gain.astype(np.float32)
-        pixels = mean + rng.uniform(0.4, 1.7) * (pixels - mean)
+        pixels = mean + rng.uniform(0.7, 2.2) * (pixels - mean)
     if rng.random() < 0.4:
         patch = np.clip(_smooth_noise(rng, ids.shape, rng.uniform(8, 120)) - 0.3, 0, 1.5)[soil]
-        tint = np.exp(rng.normal(0.0, [0.15, 0.06, 0.12])) * np.exp(rng.normal(0.0, 0.15))
+        tint = np.exp(rng.normal(0.0, [0.08, 0.03, 0.06])) * np.exp(rng.normal(0.0, 0.15))
         pixels *= 1.0 + patch[:, None] * (tint - 1.0).astype(np.float32)
     image[soil] = pixels
     return image
@@ -184,7 +184,7 @@ def camera(rng, image):
     """Sharpness, exposure, response curve, white balance, noise and compression."""
     height, width = image.shape[:2]
     if rng.random() < 0.5:  # a coarser sensor than the network's resolution
-        factor = np.exp(rng.uniform(0.0, np.log(2.6)))
+        factor = np.exp(rng.uniform(0.0, np.log(2.2)))
         small = (max(16, int(width / factor)), max(16, int(height / factor)))
         small_image = cv2.resize(image, small, interpolation=cv2.INTER_AREA)
         small_image = _develop(rng, small_image)
@@ -203,17 +203,17 @@ def _develop(rng, image):
         else:
             kernel[length // 2] = 1.0 / length
         image = cv2.filter2D(image, -1, kernel)
-    if rng.random() < 0.35:
+    if rng.random() < 0.25:
         image = cv2.GaussianBlur(image, (0, 0), rng.uniform(0.3, 1.3))
     if rng.random() < 0.3:
         image = image + rng.uniform(0.3, 1.5) * (image - cv2.GaussianBlur(image, (0, 0), rng.uniform(0.7, 1.6)))
     image = np.clip(image, 0, 400) / 255.0
     if rng.random() < 0.8:
-        image = image ** np.float32(np.exp(rng.normal(0.0, 0.3)))
+        image = image ** np.float32(np.exp(rng.normal(0.0, 0.22)))
     exposure = np.exp(rng.normal(0.0, 0.3)) if rng.random() < 0.8 else np.exp(rng.uniform(-1.9, 0.6))
-    image = image * np.float32(exposure) * np.exp(rng.normal(0.0, [0.12, 0.04, 0.12])).astype(np.float32)
+    image = image * np.float32(exposure) * np.exp(rng.normal(0.0, [0.07, 0.03, 0.07])).astype(np.float32)
     luma = image @ np.array([0.11, 0.59, 0.30], np.float32)
-    image = luma[..., None] + (image - luma[..., None]) * np.float32(rng.uniform(0.45, 1.45))
+    image = luma[..., None] + (image - luma[..., None]) * np.float32(rng.uniform(0.45, 1.2))
     if rng.random() < 0.4:  # shoulder and black level of the sensor's curve
         image = np.clip(image - rng.uniform(-0.06, 0.06), 0, None)
         image = image / (1.0 + rng.uniform(0.0, 0.6) * image)
