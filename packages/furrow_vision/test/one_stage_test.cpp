@@ -418,6 +418,7 @@ TEST_F(ModelFiles, CropsMayWeighMore) {
     return std::log(crop / (1.0 - crop));
   };
   OneStageParameters parameters;
+  parameters.context.class_evidence = "learned";
   const double plain = log_odds(yaml_, parameters);
   const std::string with_odds = "crop_log_odds: 1.5\n" + yaml_;
   EXPECT_NEAR(log_odds(with_odds, parameters), plain + 1.5, 1e-6);
