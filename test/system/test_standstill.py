@@ -85,7 +85,7 @@ class ValveFaultTest(FurrowCase):
         self.assertGreater(slow["placement_error_p95_mm"], sound["placement_error_p95_mm"] + 15)
 
     def test_a_fault_that_does_not_exist_is_a_configuration_error(self):
-        self.assert_refused(("run", "--no-wire", "--out", self.out, "--set",
+        self.assert_refused(("run", "--no-dds", "--out", self.out, "--set",
                              'robot.valve_fault_axis=["axis_2"]', "--set",
                              'robot.valve_fault_kind=["melted"]', "--set",
                              "robot.valve_fault_from_s=[0]", "--set",

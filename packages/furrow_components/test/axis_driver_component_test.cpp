@@ -17,6 +17,8 @@
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/diagnostic_msgs.h"
 #include "furrow_msgs/enums.hpp"
+#include "furrow_msgs/furrow_msgs.h"
+#include "furrow_msgs/nav_msgs.h"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::components {
@@ -296,7 +298,7 @@ TEST(AxisDriverComponent, ACropThatIsNotFiniteIsACauseForTheSafeState) {
   World world;
   world.bad_crop = [](double t_s) { return t_s > 2.0 && t_s < 2.5; };
   run(world);
-  const auto safe = world.events_named(AxisEventKind::kSafeState);
+  const auto safe = world.events_of(AxisEventKind::kSafeState);
   ASSERT_EQ(safe.size(), 1u);
   EXPECT_TRUE(safe[0].cause() == msgs::SafetyCause::kProtectionInvalid);
   EXPECT_EQ(world.sprays_between(2.3, 6.0), 0);
@@ -306,7 +308,7 @@ TEST(AxisDriverComponent, WithoutTracksCropsAreNotProtectedAndNothingIsSprayed) 
   World world;
   world.tracks_come = [](double t_s) { return t_s < 2.0; };  // plans go on
   run(world);
-  const auto safe = world.events_named(AxisEventKind::kSafeState);
+  const auto safe = world.events_of(AxisEventKind::kSafeState);
   ASSERT_EQ(safe.size(), 1u);
   EXPECT_TRUE(safe[0].cause() == msgs::SafetyCause::kTracksStale);
   EXPECT_NEAR(graph::from_msg(safe[0].closed()).to_seconds(), 1.8 + 2.0, 0.004);
@@ -318,7 +320,7 @@ TEST(AxisDriverComponent, TargetsThatWereNotSeenForTooLongAreNotSprayed) {
   world.seen_s_before = 3.0;
   run(world, {{"max_target_age_s", 2.5}});
   EXPECT_EQ(world.sprays_between(0.0, 6.0), 0);
-  EXPECT_GT(world.events_named(AxisEventKind::kStale).size(), 5u);
+  EXPECT_GT(world.events_of(AxisEventKind::kStale).size(), 5u);
 }
 
 TEST(AxisDriverComponent, AResetOfAnotherCauseLeavesALatchedOneAlone) {
@@ -330,7 +332,7 @@ TEST(AxisDriverComponent, AResetOfAnotherCauseLeavesALatchedOneAlone) {
   EXPECT_TRUE(world.states.back().mode() == AxisMode::kSafe);
   EXPECT_TRUE(world.states.back().cause() == msgs::SafetyCause::kEmergencyStop);
   ASSERT_EQ(world.states.back().latched().size(), 1u);
-  EXPECT_TRUE(world.events_named(AxisEventKind::kReset).empty());
+  EXPECT_TRUE(world.events_of(AxisEventKind::kReset).empty());
 }
 
 TEST(AxisDriverComponent, AResetWhileTheCauseHoldsIsRefused) {
@@ -338,7 +340,7 @@ TEST(AxisDriverComponent, AResetWhileTheCauseHoldsIsRefused) {
   world.emergency_stop = [](double t_s) { return t_s >= 2.0; };
   world.resets_s = {4.0};
   run(world);
-  EXPECT_EQ(world.events_named(AxisEventKind::kResetRefused).size(), 1u);
+  EXPECT_EQ(world.events_of(AxisEventKind::kResetRefused).size(), 1u);
   EXPECT_TRUE(world.states.back().mode() == AxisMode::kSafe);
 }
 
@@ -367,9 +369,9 @@ TEST(AxisDriverComponent, ARaisedToolSpraysNothingAndTheStopsAreAccountedFor) {
   world.tool_down = [](double t_s) { return t_s < 2.0 || t_s > 3.5; };
   run(world);
   EXPECT_EQ(world.sprays_between(2.02, 3.5), 0);
-  EXPECT_GE(world.events_named(AxisEventKind::kInactive).size(), 3u);
+  EXPECT_GE(world.events_of(AxisEventKind::kInactive).size(), 3u);
   EXPECT_GT(world.sprays_between(3.5, 6.0), 4);
-  EXPECT_TRUE(world.events_named(AxisEventKind::kSafeState).empty());
+  EXPECT_TRUE(world.events_of(AxisEventKind::kSafeState).empty());
 }
 
 TEST(AxisDriverComponent, AnEmergencyStopInputThatIsNotThereIsAConfigurationError) {
