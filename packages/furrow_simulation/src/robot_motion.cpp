@@ -160,10 +160,10 @@ void RobotMotion::begin_cell() {
                                 parameters_.yaw_correlation_s, yaw_random_);
   const double command_mps =
       limited(commanded_speed_mps((grid_.time + kGrid - start_).to_seconds()));
-  // Brakes hold a robot that is to stand: the disturbance fades out below a crawl.
+  // Brakes hold a robot that is to stand: the disturbances fade out below a crawl.
   constexpr double kCrawl_mps = 0.05;
-  const double next_wheel_mps =
-      command_mps + std::min(1.0, std::abs(command_mps) / kCrawl_mps) * speed_noise_mps_;
+  const double disturbed = std::min(1.0, std::abs(command_mps) / kCrawl_mps);
+  const double next_wheel_mps = command_mps + disturbed * speed_noise_mps_;
   const double next_speed_mps = next_wheel_mps * (1.0 - parameters_.slip);
   grid_.acceleration_mps2 = (next_speed_mps - grid_.speed_mps) / kGrid.to_seconds();
 
@@ -173,7 +173,7 @@ void RobotMotion::begin_cell() {
   const double ahead = std::copysign(1.0, mean_speed_mps);
   const double curvature =
       -(offset_m / (reach_m * reach_m) + 2.0 * ahead * std::sin(grid_.X_FB.heading_rad) / reach_m);
-  grid_.yaw_rate_radps = curvature * mean_speed_mps + yaw_noise_radps_;
+  grid_.yaw_rate_radps = curvature * mean_speed_mps + disturbed * yaw_noise_radps_;
 }
 
 RobotState RobotMotion::within_cell(Duration since_grid) const {

@@ -42,7 +42,7 @@ struct RobotState {
 };
 
 /// The true motion of the base along the line y = 0. Wheel speed and yaw rate are disturbed by
-/// Ornstein-Uhlenbeck noise, the speed less below a crawl, so that a robot that is to stand stands;
+/// Ornstein-Uhlenbeck noise, both less below a crawl, so that a robot that is to stand stands;
 /// steering brings the base back to the line, critically damped over the steering distance L:
 /// curvature = -(y / L^2 + 2 sin(heading) / L), with y held within L, and the second term turned
 /// when driving backwards. Integrated on a fixed grid of 1 ms from the start, speed linear in
