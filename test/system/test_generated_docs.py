@@ -1,8 +1,10 @@
 """The documents that are made from the code are as the code is now."""
 
+import subprocess
+import sys
 import unittest
 
-from furrow_case import ROOT, FurrowCase
+from furrow_case import ROOT, FurrowCase, furrow_program
 
 REFERENCE = ROOT / "docs" / "reference"
 
@@ -18,6 +20,11 @@ class GeneratedDocumentsTest(FurrowCase):
 
     def test_parameters(self):
         self.assert_current("parameters.md", self.furrow("params", "describe", "--markdown"))
+
+    def test_command_line(self):
+        command = [sys.executable, ROOT / "tools" / "command_reference.py", furrow_program()]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+        self.assert_current("command_line.md", done)
 
 
 if __name__ == "__main__":

@@ -47,8 +47,8 @@ class ObservationView {
   virtual Status set_axis_position(std::size_t axis, double position_m) = 0;
 
   /// Moves the robot. All plants with x < `seen_until_x_m` are taken as seen. A robot that stands
-  /// or reverses keeps its plan: the state stays at the furthest point that it reached, and with
-  /// the measured speed in use at the last speed that it drove there. A target that is first given
+  /// or reverses keeps its plan: the state stays at the furthest point that it reached. If the
+  /// measured speed is used, the last speed there stays too. A target that is first given
   /// while it is behind that point, beside one that was treated, is the same plant: kDuplicate.
   /// Error: not finite (the state is then kept).
   virtual Status advance(const RobotState& robot, double seen_until_x_m) = 0;
