@@ -67,7 +67,7 @@ TEST_F(GraphFile, ReadsThreadAndPriorityOfAComponent) {
   for (const std::string priority : {"100", "-1", "high", "1.5"}) {
     EXPECT_EQ(
         error("components:\n  a: {class: b, thread: dedicated, priority: " + priority + "}\n"),
-        "g.yaml:2: a.priority: is not a number from 0 to 99");
+        "g.yaml:2: a.priority: must be a number from 0 to 99");
   }
 }
 
@@ -156,7 +156,7 @@ TEST_F(GraphFile, RemainingComponentsMayHaveAProcessEach) {
                [&] {
                  (void)place("processes:\n  b: [a]\n  others: {components: \"*\", each: true}\n");
                }),
-      "d.yaml:1: processes: there are two processes 'b'");
+      "d.yaml:1: processes: process 'b' is given twice");
 }
 
 TEST_F(GraphFile, HostAddressesBecomeTransportParameters) {
@@ -192,7 +192,7 @@ TEST_F(GraphFile, HostAddressesBecomeTransportParameters) {
                        (void)load_deployment(write(
                            folder_ / "d.yaml", "hosts: {h: 10.0.0.1}\nprocesses: {p: \"*\"}\n"));
                      }),
-            "d.yaml:2: p.host: '' is not among the hosts");
+            "d.yaml:2: p.host: '' is not one of the hosts");
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(ParameterFile, AnErrorNamesFileLineAndKey) {
   };
   EXPECT_EQ(load("rate_hz: 1\nrate_hz: 2\n"), "p.yaml:2: rate_hz: is given twice");
   EXPECT_EQ(load("names: [a, [b]]\n"), "p.yaml:1: names: must be a value or a list of values");
-  EXPECT_EQ(load("\nrate_hz:\n"), "p.yaml:2: rate_hz: has no value, or more than a plain one");
+  EXPECT_EQ(load("\nrate_hz:\n"), "p.yaml:2: rate_hz: must have one value or a list of values");
   EXPECT_EQ(load("- 1\n"), "p.yaml:1: is not a map of keys");
   EXPECT_TRUE(load("a: [1\nb: 2\n").starts_with("p.yaml:")) << load("a: [1\nb: 2\n");
   EXPECT_EQ(error_of(folder, [&] { (void)read_parameter_file(folder / "none.yaml"); }),

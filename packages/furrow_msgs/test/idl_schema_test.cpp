@@ -76,6 +76,9 @@ TEST(IdlSchema, PrintsNestedMessages) {
             "    expected:\n"
             "      sec: 0\n"
             "      nanosec: 0\n"
+            "    observed:\n"
+            "      sec: 0\n"
+            "      nanosec: 0\n"
             "    while_moving: false\n"
             "    track_ids: [4, 5]\n"
             "decisions: []\n");

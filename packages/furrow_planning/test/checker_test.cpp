@@ -47,8 +47,8 @@ TEST_F(Checker, AcceptsAGoodPlan) {
 }
 
 TEST_F(Checker, FindsWhatIsWrong) {
-  expect_found([](Plan& plan) { plan.routes.pop_back(); }, "one route for each axis");
-  expect_found([](Plan& plan) { plan.decisions.pop_back(); }, "one decision for each target");
+  expect_found([](Plan& plan) { plan.routes.pop_back(); }, "routes and axes differ");
+  expect_found([](Plan& plan) { plan.decisions.pop_back(); }, "decisions and targets differ");
   expect_found([](Plan& plan) { plan.decisions[1].id = 77; }, "another target");
   expect_found([](Plan& plan) { plan.weight += 1.0; }, "sums");
   expect_found([](Plan& plan) { plan.travel_m += 1.0; }, "sums");
