@@ -6,8 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "furrow_experiments/parallel.hpp"
-
 namespace furrow::experiments {
 namespace {
 
