@@ -14,6 +14,7 @@
 #include "furrow_field/field_csv.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/runtime.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 #include "furrow_simulation/renderer.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "furrow_components/field_conversion.hpp"
 #include "furrow_components/image_conversions.hpp"
 #include "furrow_components/pose_buffer.hpp"
 

@@ -17,6 +17,7 @@
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/enums.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::components {

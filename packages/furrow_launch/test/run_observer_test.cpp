@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "furrow_graph/runtime.hpp"
+#include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::launch {

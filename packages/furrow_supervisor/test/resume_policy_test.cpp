@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "furrow_msgs/furrow_msgs.h"
+
 namespace furrow::supervisor {
 namespace {
 
