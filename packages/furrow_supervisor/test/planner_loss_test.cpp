@@ -184,7 +184,7 @@ class Feeder final : public graph::Component {
   Stage stage_ = Stage::kSpraying;
 };
 
-graph::Registry launch::make_registry(Outcome& outcome) {
+graph::Registry make_registry(Outcome& outcome) {
   graph::Registry registry;
   registry.add_search_folder(FURROW_COMPONENT_FOLDER);
   graph::ComponentClass type{.name = "feeder"};
@@ -220,7 +220,7 @@ dds::DdsParameters wire(int domain) {
 
 int run_planner(int domain) {
   Outcome unused;
-  graph::Registry registry = launch::make_registry(unused);
+  graph::Registry registry = make_registry(unused);
   dds::DdsTransport transport(wire(domain));
   graph::Runtime runtime(make_graph(), registry,
                          {.clock = graph::ClockMode::kReal,
@@ -237,7 +237,7 @@ double longest_of_many() {
   const char* repetitions = std::getenv("FURROW_REPETITIONS");
   outcome.wanted = repetitions == nullptr ? 100 : std::atoi(repetitions);
   outcome.domain = static_cast<int>(dds::test_domain());
-  graph::Registry registry = launch::make_registry(outcome);
+  graph::Registry registry = make_registry(outcome);
   dds::DdsTransport transport(wire(outcome.domain));
   graph::Runtime runtime(make_graph(), registry,
                          {.clock = graph::ClockMode::kReal,

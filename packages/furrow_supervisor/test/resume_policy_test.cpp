@@ -19,14 +19,14 @@ furrow_msgs::msg::AxisState state(const std::string& axis,
   return state;
 }
 
-constexpr ResumePolicy::Clock::time_point kStart{std::chrono::seconds(100)};
+constexpr ResumePolicy::Clock::time_point kResumeStart{std::chrono::seconds(100)};
 
 TEST(ResumePolicy, ResetsLostPeersByAxisAndCauseAndNothingElse) {
   ResumePolicy policy;
   policy.take(state("axis_1", {SafetyCause::kPeerLost, SafetyCause::kValveFault}));
   policy.take(state("axis_2", {SafetyCause::kEmergencyStop, SafetyCause::kDriveFault}));
   policy.take(state("axis_3", {}));
-  const auto resets = policy.due(kStart);
+  const auto resets = policy.due(kResumeStart);
   ASSERT_EQ(resets.size(), 1u);
   EXPECT_EQ(resets[0].axis(), "axis_1");
   EXPECT_EQ(resets[0].cause(), SafetyCause::kPeerLost);
@@ -43,7 +43,7 @@ TEST(ResumePolicy, EveryCauseButThoseOfALostPeerIsLeftToAPerson) {
     ASSERT_TRUE(cause.ok()) << int{value};
     ResumePolicy policy;
     policy.take(state("axis_1", {*cause}));
-    const bool resets = !policy.due(kStart).empty();
+    const bool resets = !policy.due(kResumeStart).empty();
     EXPECT_EQ(resets, std::ranges::find(lost, *cause) != lost.end()) << msgs::to_string(*cause);
   }
 }
@@ -51,11 +51,11 @@ TEST(ResumePolicy, EveryCauseButThoseOfALostPeerIsLeftToAPerson) {
 TEST(ResumePolicy, AsksOnceASecondAndStopsWhenTheCauseIsReset) {
   ResumePolicy policy;
   policy.take(state("axis_1", {SafetyCause::kPlanStale}));
-  EXPECT_EQ(policy.due(kStart).size(), 1u);
-  EXPECT_TRUE(policy.due(kStart + std::chrono::milliseconds(900)).empty());
-  EXPECT_EQ(policy.due(kStart + std::chrono::milliseconds(1100)).size(), 1u);
+  EXPECT_EQ(policy.due(kResumeStart).size(), 1u);
+  EXPECT_TRUE(policy.due(kResumeStart + std::chrono::milliseconds(900)).empty());
+  EXPECT_EQ(policy.due(kResumeStart + std::chrono::milliseconds(1100)).size(), 1u);
   policy.take(state("axis_1", {}));
-  EXPECT_TRUE(policy.due(kStart + std::chrono::seconds(5)).empty());
+  EXPECT_TRUE(policy.due(kResumeStart + std::chrono::seconds(5)).empty());
 }
 
 }  // namespace
