@@ -12,7 +12,7 @@ namespace furrow::cli {
 namespace {
 
 /// What a command line of one command printed, and its exit code.
-struct Run {
+struct Outcome {
   int exit_code = 0;
   std::string out;
   std::string error;
@@ -31,7 +31,7 @@ struct Values {
   std::vector<std::string> arguments;
 };
 
-Run run(
+Outcome run(
     std::vector<const char*> words, Values& values,
     const std::function<int()>& action = [] { return 0; }) {
   CommandLine command_line("tool", "A tool.", "1.2.3");
@@ -50,7 +50,7 @@ Run run(
   words.insert(words.begin(), "tool");
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  Run result;
+  Outcome result;
   result.exit_code = command_line.run(static_cast<int>(words.size()), words.data());
   std::cout.exceptions(std::ios::goodbit);
   result.error = testing::internal::GetCapturedStderr();
@@ -58,13 +58,13 @@ Run run(
   return result;
 }
 
-Run run(std::vector<const char*> words) {
+Outcome run(std::vector<const char*> words) {
   Values values;
   return run(std::move(words), values);
 }
 
 void expect_refused(std::vector<const char*> words, const std::string& part) {
-  const Run result = run(std::move(words));
+  const Outcome result = run(std::move(words));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.out, "");
   EXPECT_NE(result.error.find(part), std::string::npos) << result.error;
@@ -73,7 +73,7 @@ void expect_refused(std::vector<const char*> words, const std::string& part) {
 TEST(CommandLine, FillsValuesOfEveryKind) {
   Values values;
   bool ran = false;
-  const Run result =
+  const Outcome result =
       run({"do",       "--flag", "--no-either", "--alias=7", "--whole", "4", "--number", "2.5",
            "--maybe",  "0.1",    "--text",      "other",     "--list",  "a", "--list",   "b",
            "--origin", "-1",     "2",           "--",        "x",       "y"},
@@ -101,7 +101,7 @@ TEST(CommandLine, KeepsDefaultsAndTellsThemInTheHelp) {
   EXPECT_EQ(values.count, 3);
   EXPECT_EQ(values.either, std::nullopt);
   EXPECT_EQ(values.maybe, std::nullopt);
-  const Run help = run({"do", "--help"});
+  const Outcome help = run({"do", "--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_NE(help.out.find("=default"), std::string::npos) << help.out;
   EXPECT_NE(help.out.find("from 1 to 10"), std::string::npos) << help.out;
@@ -129,10 +129,10 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
 TEST(CommandLine, ExitCodeTellsHowTheCommandEnded) {
   Values values;
   EXPECT_EQ(run({"do"}, values, [] { return 1; }).exit_code, 1);
-  const Run bad = run({"do"}, values, []() -> int { throw ConfigError("file:1: key: wrong"); });
+  const Outcome bad = run({"do"}, values, []() -> int { throw ConfigError("file:1: key: wrong"); });
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_EQ(bad.error, "tool: file:1: key: wrong\n");
-  const Run failed = run({"do"}, values, []() -> int { throw std::runtime_error("no disk"); });
+  const Outcome failed = run({"do"}, values, []() -> int { throw std::runtime_error("no disk"); });
   EXPECT_EQ(failed.exit_code, 1);
   EXPECT_EQ(failed.error, "tool: no disk\n");
 }
@@ -141,11 +141,11 @@ TEST(CommandLine, OutputThatCannotBeWrittenIsAnError) {
   std::ofstream full("/dev/full");
   std::streambuf* const kept = std::cout.rdbuf(full.rdbuf());
   Values values;
-  const Run result = run({"do"}, values, [] {
+  const Outcome result = run({"do"}, values, [] {
     std::cout << "text";
     return 0;
   });
-  const Run help = run({"do", "--help"});
+  const Outcome help = run({"do", "--help"});
   std::cout.rdbuf(kept);
   std::cout.clear();
   EXPECT_EQ(result.exit_code, 1);
