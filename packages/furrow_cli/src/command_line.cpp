@@ -190,7 +190,9 @@ Option Command::flag(const std::string& name, bool& value, const std::string& de
 }
 Option Command::flag(const std::string& name, std::optional<bool>& value,
                      const std::string& description) {
-  return Option(app_->add_flag(name, value, description));
+  // Unlike add_flag(), this leaves the value empty where the flag is not given.
+  return Option(app_->add_flag_function(
+      name, [&value](std::int64_t count) { value = count > 0; }, description));
 }
 
 bool Command::given(const std::string& option) const {
@@ -233,6 +235,14 @@ int CommandLine::parse_and_run(int argc, const char* const* argv) {
     app_->parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {
     return app_->exit(asked_for_help);
+  } catch (const CLI::RequiredError& missing) {
+    // A misspelt subcommand is missing, and its word remains.
+    const std::vector<std::string> unknown = app_->remaining(true);
+    std::cerr << app_->get_name() << ": "
+              << (unknown.empty() ? missing.what()
+                                  : "'" + unknown.front() + "' is not a subcommand or option")
+              << "\nRun with --help for more information.\n";
+    return kBadUsage;
   } catch (const CLI::ParseError& bad_usage) {
     std::cerr << app_->get_name() << ": " << bad_usage.what()
               << "\nRun with --help for more information.\n";
