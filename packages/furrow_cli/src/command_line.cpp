@@ -256,12 +256,16 @@ int CommandLine::run(int argc, const char* const* argv) {
   try {
     // The one place that finds an output that cannot be written, whatever the command.
     std::cout.exceptions(std::ios::badbit | std::ios::failbit);
+    // A message on standard error must not flush, and fail with, standard output.
+    std::cerr.tie(nullptr);
     const int exit_code = parse_and_run(argc, argv);
     std::cout.flush();
     return exit_code;
   } catch (const std::ios_base::failure&) {
+    const int reason = errno;
+    std::cout.exceptions(std::ios::goodbit);
     std::cerr << prefix
-              << "cannot write to standard output: " << std::generic_category().message(errno)
+              << "cannot write to standard output: " << std::generic_category().message(reason)
               << '\n';
   } catch (const ConfigError& bad_configuration) {
     std::cerr << prefix << bad_configuration.what() << '\n';
