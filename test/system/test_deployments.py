@@ -63,7 +63,7 @@ class CtrlCTest(DeploymentCase):
 
     def assert_interrupted_report(self, weeds_at_least):
         """What was done so far is written, and marked."""
-        self.assertEqual(sorted(path.name for path in self.out.iterdir()), REPORT_FILES)
+        self.assertLessEqual(set(REPORT_FILES), {path.name for path in self.out.iterdir()})
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertTrue(summary["interrupted"])
         self.assertGreater(summary["distance_m"], 0.0)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "furrow_components/application_record.hpp"
@@ -19,6 +21,20 @@ namespace {
 geometry::ToolModel tool_of(const PreparedGraph& prepared) {
   const std::string file = graph::common_text(prepared.spec, "tool_file");
   return file.empty() ? geometry::ToolModel() : geometry::load_tool_model(file);
+}
+
+/// What every nozzle passed over, along the row. A run that was interrupted leaves the weeds ahead
+/// of it untouched: they are no losses of vision or planning.
+std::pair<double, double> passed_x_m(const std::vector<ledger::RouteView>& routes) {
+  constexpr double kFarBack_m = std::numeric_limits<double>::lowest();
+  std::optional<double> least_m;
+  for (const ledger::RouteView& route : routes) {
+    if (route.p_F_m.empty()) continue;
+    double farthest_m = kFarBack_m;
+    for (const Eigen::Vector2d& p_F : route.p_F_m) farthest_m = std::max(farthest_m, p_F.x());
+    least_m = std::min(least_m.value_or(farthest_m), farthest_m);
+  }
+  return {kFarBack_m, least_m.value_or(kFarBack_m)};
 }
 
 ledger::RunInfo run_info(const RunOutcome& outcome, const PreparedGraph& prepared,
@@ -58,6 +74,7 @@ Result<RunReport> write_run_report(const RunOutcome& outcome, const PreparedGrap
   }
   ledger::RunRecord record = std::move(converted).value();
   record.info = run_info(outcome, prepared, options, std::move(record.info));
+  if (outcome.interrupted) record.info.passed_x_m = passed_x_m(record.routes);
   record.tables = components::use_tables(message, applications, tool);
   std::ranges::move(health_tables(outcome.components, !options.lockstep()),
                     std::back_inserter(record.tables));

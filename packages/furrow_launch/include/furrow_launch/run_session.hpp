@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "furrow_dds/dds_parameters.hpp"
 #include "furrow_graph/graph_file.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
