@@ -69,7 +69,7 @@ class SafetyTest(FurrowCase):
         summary = self.run_graph(*TRUE_DETECTIONS, "--set", "planner.heartbeat_rate_hz=1")
         self.assertEqual(summary["sprays"], 0)
         report = (self.out / "report.html").read_text()
-        self.assertIn("Made safe", report)
+        self.assertIn("Safe states", report)
         self.assertIn("peer_lost", report)
 
 
