@@ -137,8 +137,14 @@ class Feeder final : public graph::Component {
 
   void hear() {
     constexpr Duration kInFlight = Duration::milliseconds(200);
-    if (stage_ != Stage::kSafe || context_.now() - killed_ < kInFlight) return;
+    // A reset is refused while a cause holds, as on a busy machine: it is asked for again.
+    constexpr Duration kRepeat = Duration::milliseconds(500);
+    const Time now = context_.now();
+    const bool first = stage_ == Stage::kSafe && now - killed_ >= kInFlight;
+    const bool again = stage_ == Stage::kResetting && now - reset_at_ >= kRepeat;
+    if (!first && !again) return;
     stage_ = Stage::kResetting;
+    reset_at_ = now;
     reset_out_.publish(furrow_msgs::msg::ToolReset());
   }
 
@@ -182,6 +188,7 @@ class Feeder final : public graph::Component {
   Time killed_;
   std::uint64_t openings_ = 0;
   Stage stage_ = Stage::kSpraying;
+  Time reset_at_;
 };
 
 graph::Registry make_registry(Outcome& outcome) {
