@@ -25,7 +25,7 @@ ALGORITHMS = {
 # What a package may depend on; a package that is not here has no place yet.
 BASE = {"furrow_cmake", "furrow_core"}
 GEOMETRIC = BASE | {"furrow_geometry"}
-SYSTEM = BASE | {"furrow_msgs", "furrow_graph", "furrow_dds"}
+SYSTEM = BASE | {"furrow_log", "furrow_msgs", "furrow_graph", "furrow_dds"}
 LAYERS = {
     "furrow_cmake": set(),
     "furrow_core": {"furrow_cmake"},
@@ -39,9 +39,10 @@ LAYERS = {
     "furrow_actuation": GEOMETRIC,
     "furrow_simulation": GEOMETRIC | {"furrow_field", "furrow_actuation"},
     "furrow_ledger": GEOMETRIC | {"furrow_field"},
+    "furrow_log": BASE,
     "furrow_msgs": BASE,
-    "furrow_graph": BASE | {"furrow_msgs"},
-    "furrow_dds": BASE | {"furrow_msgs", "furrow_graph"},
+    "furrow_graph": BASE | {"furrow_log", "furrow_msgs"},
+    "furrow_dds": BASE | {"furrow_log", "furrow_msgs", "furrow_graph"},
     "furrow_recording": BASE | {"furrow_msgs", "furrow_graph", "furrow_dds"},
     "furrow_components": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph"},
     "furrow_experiments": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph", "furrow_components"},
@@ -64,10 +65,13 @@ RESTRICTED = [
     ("Fast CDR", re.compile(r"^fastcdr/"), {"fastcdr"}, {"furrow_dds", "furrow_msgs"}),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"), {"yaml-cpp"},
      {"furrow_annotation", "furrow_graph", "furrow_recording", "furrow_vision"}),
+    ("spdlog", re.compile(r"^spdlog/"), {"spdlog"}, {"furrow_log"}),
     ("CLI11", re.compile(r"^CLI/"), {"CLI11"}, {"furrow_cli"}),
 ]
 # Where a package's use is for one purpose only.
 RESTRICTED_FILES = {
+    # spdlog's headers take seconds to compile.
+    ("furrow_log", "spdlog"): {"packages/furrow_log/src/spdlog_sinks.cpp"},
     # The annotations of this data set are YAML.
     ("furrow_annotation", "yaml-cpp"): {"packages/furrow_annotation/src/cwfid.cpp"},
     ("furrow_vision", "yaml-cpp"): {"packages/furrow_vision/src/model_file.cpp"},
@@ -90,6 +94,7 @@ CMAKE_NAMES = {
     "libgpiod-dev": "libgpiod",
     "libmodbus-dev": "libmodbus",
     "libopencv-dev": "OpenCV",
+    "libspdlog-dev": "spdlog",
     "liburdfdom-dev": "urdfdom",
     "libyaml-cpp-dev": "yaml-cpp",
     "libzstd-dev": "libzstd",
