@@ -12,6 +12,7 @@
 #include "furrow_launch/run_session.hpp"
 #include "furrow_launch/run_summary.hpp"
 #include "output_options.hpp"
+#include "run_log.hpp"
 #include "run_options.hpp"
 
 namespace furrow::cli {
@@ -25,7 +26,8 @@ struct RunCommandOptions {
   bool supervised = false;  ///< the supervisor has claimed the folder of the report
 };
 
-launch::RunOutcome run_session(launch::RunSession& session, launch::SignalPipe& signals) {
+launch::RunOutcome run_session(launch::RunSession& session, const launch::RunOptions& options,
+                               launch::SignalPipe& signals, RunLog& log) {
   ProgressBar bar("weeding");
   const launch::RunSession::Callbacks callbacks = {
       .progress =
@@ -34,9 +36,13 @@ launch::RunOutcome run_session(launch::RunSession& session, launch::SignalPipe& 
             bar.show(status.progress(), fixed(status.distance_m(), 1) + " m, " +
                                             fixed(status.speed_mps(), 2) + " m/s");
           },
-      .warn = [](const std::string& text) { std::cerr << "furrow: " << text << '\n'; }};
+      .warn = [&log](const std::string& text) { log.write(log::Level::kWarn, text); },
+      .log = &log.log()};
+  log.write(log::Level::kInfo,
+            "run of graph '" + options.graph + "' starts, seed " + std::to_string(options.seed));
   launch::RunOutcome outcome = session.run(signals, callbacks);
   bar.finish();
+  log.run_started();
   return outcome;
 }
 
@@ -58,8 +64,10 @@ int run(const RunCommandOptions& options) {
   const std::filesystem::path folder =
       claimed ? claimed->path() : std::filesystem::path(options.run.out);
 
+  const auto start = options.supervised ? log::FileStart::kAppend : log::FileStart::kReplace;
+  RunLog log(options.run, folder, session.process_name(), start);
   launch::SignalPipe signals({SIGINT, SIGTERM});
-  const launch::RunOutcome outcome = run_session(session, signals);
+  const launch::RunOutcome outcome = run_session(session, options.run, signals, log);
   // The report is worth waiting for: one signal does not lose it, a second one ends the process.
   const launch::SignalWatch impatience(signals, [](int call) {
     if (call > 1) std::_Exit(1);
@@ -67,14 +75,15 @@ int run(const RunCommandOptions& options) {
   const bool has_report = session.reports() && outcome.record != nullptr;
   const bool well = !outcome.result.failed && outcome.result.reason == "finished";
   if (!well || outcome.interrupted) {
-    std::cerr << "furrow: the run ended early: "
-              << (outcome.interrupted ? "interrupted" : outcome.result.reason)
-              << (session.reports() && !has_report ? "; there is no report" : "") << '\n';
+    log.write(log::Level::kFatal,
+              "the run ended early: " +
+                  (outcome.interrupted ? std::string("interrupted") : outcome.result.reason) +
+                  (session.reports() && !has_report ? "; there is no report" : ""));
   }
   if (has_report && !outcome.result.failed) {
     const auto report = launch::write_run_report(outcome, session.prepared(), options.run, folder);
     if (!report.ok()) {
-      std::cerr << "furrow: " << report.error().message << '\n';
+      log.write(log::Level::kFatal, report.error().message);
       return 1;
     }
     print(*report, folder);

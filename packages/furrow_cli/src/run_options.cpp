@@ -33,6 +33,9 @@ void add_run_options(Command command, launch::RunOptions& options) {
   command.option("--recording", options.recordings,
                  "play camera and odometry from these MCAP files in place of the simulator "
                  "(parameters of playback)");
+  command.option("--log-level", options.log_levels,
+                 "LEVEL or COMPONENT=LEVEL: the least level to log, of debug, info, warn, error, "
+                 "fatal");
 }
 
 }  // namespace furrow::cli

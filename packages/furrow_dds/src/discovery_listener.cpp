@@ -45,6 +45,7 @@ msgs::Qos from_dds_qos(const EndpointQos& in) {
   qos.depth = 0;
   qos.deadline = from_dds(in.m_deadline.period);
   qos.liveliness_lease = from_dds(in.m_liveliness.lease_duration);
+  qos.lifespan = from_dds(in.m_lifespan.duration);
   return qos;
 }
 

@@ -68,6 +68,7 @@ Duration from_dds(const Duration_t& duration) {
 fdds::DataWriterQos writer_qos(const msgs::Qos& qos) {
   fdds::DataWriterQos out = fdds::DATAWRITER_QOS_DEFAULT;
   set_common(qos, out);
+  if (qos.lifespan > Duration()) out.lifespan().duration = to_dds(qos.lifespan);
   // Our own threads send, so that large and small messages do not share a thread.
   out.publish_mode().kind = fdds::SYNCHRONOUS_PUBLISH_MODE;
   auto& times = out.reliable_writer_qos().times;

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <mutex>
 
 #include "cdr_type.hpp"
+#include "library_log.hpp"
 #include "network_interfaces.hpp"
 #include "participant_qos.hpp"
 #include "shared_memory.hpp"
@@ -17,20 +16,9 @@ namespace fdds = eprosima::fastdds::dds;
 
 namespace {
 
-// The library writes its warnings to stdout, where the output of programs goes.
-void log_to_stderr() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    fdds::Log::ClearConsumers();
-    auto consumer = std::make_unique<fdds::StdoutErrConsumer>();
-    consumer->stderr_threshold(fdds::Log::Kind::Info);
-    fdds::Log::RegisterConsumer(std::move(consumer));
-  });
-}
-
 ParticipantHandle create_participant(const DdsParameters& parameters, DiscoveryListener& listener) {
   const fdds::DomainParticipantQos qos = participant_qos(parameters);
-  log_to_stderr();
+  take_over_library_log();
   remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
   if (std::ranges::find(parameters.transports, "udp") != parameters.transports.end()) {
     wait_for_interfaces(parameters.interfaces, std::chrono::seconds(5));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <utility>
 
 #include "furrow_graph/graph_check.hpp"
 
@@ -77,13 +78,18 @@ void Node::run_messages() {
   for (; budget > 0; --budget) {
     Mail mail;
     const std::function<void(const MessagePtr&)>* callback = nullptr;
+    std::uint64_t drops = 0;
+    std::string topic;  ///< of an input whose mailbox dropped messages
     {
       const MutexLock lock(mutex_);
       mail = mail_.pop();
       Input& input = inputs_[mail.input];
       --input.waiting;
       callback = &input.callback;  // fixed since construction
+      drops = input.dropped - std::exchange(input.dropped_logged, input.dropped);
+      if (drops > 0) topic = input.topic;
     }
+    if (drops > 0) log_drops(topic, drops);
     arrival_ = mail.arrived;
     call([&] { (*callback)(mail.message); });
   }
@@ -135,9 +141,27 @@ void Node::every(Duration period, std::function<void(Time)> callback) {
 }
 
 void Node::health(HealthLevel level, std::string_view message) {
-  const MutexLock lock(mutex_);
-  health_.level = level;
-  health_.message = message;
+  HealthLevel before = HealthLevel::kOk;
+  {
+    const MutexLock lock(mutex_);
+    if (level == health_.level && message == health_.message) return;
+    before = std::exchange(health_.level, level);
+    health_.message = message;
+  }
+  if (level != HealthLevel::kOk) {
+    log(level == HealthLevel::kWarn ? log::Level::kWarn : log::Level::kError, message);
+  } else if (before != HealthLevel::kOk) {
+    log(log::Level::kInfo, message.empty() ? "ok again" : message);
+  }
+}
+
+void Node::log(log::Level level, std::string_view message) {
+  if (log_ != nullptr) log_->write(host_.now(), level, spec_.name, message);
+}
+
+void Node::log_drops(const std::string& topic, std::uint64_t count) {
+  log(log::Level::kWarn,
+      "mailbox of '" + topic + "' was full; " + std::to_string(count) + " of its messages dropped");
 }
 
 void Node::count(std::string_view counter, std::int64_t by) {

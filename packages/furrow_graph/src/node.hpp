@@ -12,6 +12,7 @@
 #include "furrow_graph/context.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
+#include "furrow_log/log.hpp"
 #include "lateness.hpp"
 #include "mailbox.hpp"
 #include "route.hpp"
@@ -42,6 +43,8 @@ class Node final : public Context {
        std::uint64_t seed, NodeHost& host);
   ~Node() override;
 
+  /// Before construct(): where log() writes. Null: nowhere.
+  void set_log(log::Log* log) { log_ = log; }
   /// Creates the component. The routes must outlive the node.
   void construct(std::function<Route&(const std::string& topic)> route_of);
   void destroy_component() { component_.reset(); }
@@ -72,6 +75,7 @@ class Node final : public Context {
   void every(Duration period, std::function<void(Time)> callback) override;
   void health(HealthLevel level, std::string_view message) override;
   void count(std::string_view counter, std::int64_t by) override;
+  void log(log::Level level, std::string_view message) override;
   void request_stop(std::string_view reason) override { host_.request_stop(reason, false); }
 
  protected:
@@ -90,11 +94,14 @@ class Node final : public Context {
     std::size_t waiting = 0;
     std::uint64_t received = 0;
     std::uint64_t dropped = 0;
+    std::uint64_t dropped_logged = 0;
   };
 
   /// Calls the component and measures the time. An exception stops the run.
   template <class Callback>
   void call(const Callback& callback);
+  /// Logs the messages that the mailbox of an input dropped since the last call.
+  void log_drops(const std::string& topic, std::uint64_t count);
   void require_declared(const std::vector<PortInfo>& ports, const msgs::Topic& topic) const;
 
   ComponentSpec spec_;
@@ -102,6 +109,7 @@ class Node final : public Context {
   std::vector<GivenParameter> parameters_;
   std::uint64_t seed_;
   NodeHost& host_;
+  log::Log* log_ = nullptr;
   std::function<Route&(const std::string&)> route_of_;
   std::unique_ptr<Component> component_;
   std::vector<Timer> timers_;

@@ -8,6 +8,7 @@
 #include "executor.hpp"
 #include "furrow_core/hash.hpp"
 #include "furrow_graph/graph_check.hpp"
+#include "rosout.hpp"
 
 namespace furrow::graph {
 
@@ -37,8 +38,11 @@ struct Runtime::Impl {
   std::map<std::string, std::string> process_of;
   std::unique_ptr<TransportWriter> diagnostics_writer;
   std::vector<Route::Reader> diagnostics_readers;
+  log::Log* log = nullptr;
+  std::shared_ptr<log::Sink> rosout;
 
   ~Impl() {
+    if (rosout != nullptr) log->remove(*rosout);
     // Readers first, so that no message arrives for a destroyed node.
     incoming.clear();
     for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) (*it)->destroy_component();
@@ -76,6 +80,7 @@ struct Runtime::Impl {
       const ComponentClass& type = registry.find(spec.class_name, spec.where);
       nodes.push_back(std::make_unique<Node>(
           spec, type, parameters_of(spec, graph, type.description), options.seed, *executor));
+      nodes.back()->set_log(options.log);
     }
     for (const std::string& name : options.components) {
       if (!is_local(name)) throw ConfigError("the graph has no component '" + name + "'");
@@ -135,6 +140,25 @@ struct Runtime::Impl {
     return list;
   }
 
+  /// Publishes the log, as ROS 2 nodes do.
+  void publish_log(const RuntimeOptions& options) {
+    if (options.log == nullptr) return;
+    const msgs::Topic& topic = msgs::topics::Rosout::topic();
+    std::unique_ptr<TransportWriter> writer;
+    if (options.transport != nullptr) {
+      writer = options.transport->make_writer(std::string(topic.name), *topic.type, topic.qos);
+    }
+    rosout = make_rosout_sink(
+        std::move(writer),
+        [this, readers = readers_of(std::string(topic.name))](const MessagePtr& message) {
+          for (const Route::Reader& reader : readers) {
+            executor->deliver_from_transport(reader, message);
+          }
+        },
+        options.clock == ClockMode::kReal);
+    log->add(rosout);
+  }
+
   void diagnose(const RuntimeOptions& options) {
     const msgs::Topic& topic = msgs::topics::Diagnostics::topic();
     if (options.transport != nullptr) {
@@ -146,9 +170,12 @@ struct Runtime::Impl {
     const bool real = options.clock == ClockMode::kReal;
     executor->every_second([this, process = options.process,
                             transport_health = options.transport_health, real](Time now) {
+      const Health transport = transport_health && real ? transport_health() : Health();
+      if (log != nullptr && transport.level != HealthLevel::kOk) {
+        log->write(now, log::Level::kWarn, "transport", transport.message);
+      }
       const bool outside = diagnostics_writer != nullptr && diagnostics_writer->has_readers();
       if (!outside && diagnostics_readers.empty()) return;
-      const Health transport = transport_health && real ? transport_health() : Health();
       const auto message =
           std::make_shared<const diagnostic_msgs::msg::DiagnosticArray>(make_diagnostics(
               now, process, status(), transport_health && real ? &transport : nullptr, real));
@@ -229,6 +256,7 @@ std::unique_ptr<SharedLockstep> Runtime::Impl::make_shared_lockstep(const GraphS
 Runtime::Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOptions& options)
     : impl_(std::make_unique<Impl>()) {
   if (options.threads < 1) throw ConfigError("threads: must be at least 1");
+  impl_->log = options.log;
   impl_->connections = check_graph(graph, registry);
   impl_->executor = options.clock == ClockMode::kLockstep ? make_lockstep_executor(options.threads)
                                                           : make_realtime_executor(options.threads);
@@ -246,6 +274,7 @@ Runtime::Runtime(const GraphSpec& graph, Registry& registry, const RuntimeOption
   const bool shared = options.clock == ClockMode::kLockstep && options.processes.size() > 1;
   impl_->connect(options, shared);
   impl_->diagnose(options);
+  impl_->publish_log(options);
   if (shared) {
     if (options.transport == nullptr)
       throw ConfigError("a lock-step of several processes requires a transport");

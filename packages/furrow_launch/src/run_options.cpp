@@ -76,10 +76,15 @@ std::vector<std::string> run_arguments(const RunOptions& options) {
   add_given(arguments, "--ground", options.ground);
   add_given(arguments, "--record", options.record);
   add_all(arguments, "--recording", options.recordings);
+  add_all(arguments, "--log-level", options.log_levels);
   add_all(arguments, "--set", options.settings);
   add_all(arguments, "--dds", options.dds_settings);
   add_all(arguments, "--address", options.addresses);
   return arguments;
+}
+
+std::filesystem::path log_file(const std::filesystem::path& folder, const std::string& process) {
+  return folder / (process.empty() ? "run.log" : "run_" + process + ".log");
 }
 
 }  // namespace furrow::launch

@@ -110,6 +110,7 @@ RunOutcome RunSession::run(SignalPipe& signals, const Callbacks& callbacks) {
   graph::GraphSpec spec = prepared_.spec;
   observer.add_to(spec, registry_);
   graph::RuntimeOptions runtime_options = this->runtime_options();
+  runtime_options.log = callbacks.log;
   std::unique_ptr<dds::DdsTransport> transport;
   std::optional<TransportHealth> health;
   if (use_dds_) {
@@ -132,7 +133,7 @@ RunOutcome RunSession::run(SignalPipe& signals, const Callbacks& callbacks) {
       },
       kPatienceWithInterrupt);
   if (!options_.lockstep() && !wait_for_others(runtime, interrupted)) {
-    callbacks.warn("starting although not all other processes are there");
+    callbacks.warn("not all other processes were found within 10 s; the run starts without them");
   }
   const auto start = SteadyClock::now();
   RunOutcome outcome;

@@ -107,7 +107,7 @@ class Tokenizer {
   std::vector<Token> tokens_;
 };
 
-/// A recursive descent over the tokens; the first fault ends it.
+/// A recursive descent parser; it stops at the first error.
 class Parser {
  public:
   using Structs = std::map<std::string, std::vector<IdlMember>>;

@@ -37,6 +37,7 @@ enum Row : std::size_t {
   kRunStatus,
   kRunRecord,
   kDiagnostics,
+  kRosout,
   kRows
 };
 
@@ -117,6 +118,8 @@ const std::array<Topic, kRows>& table() {
        "What the ledger is made of, once at the end."},
       {"diagnostics", &message_type<topics::Diagnostics::Message>(), reliable_stream_qos(50), 1, "",
        "Health of the components: level, message, counters."},
+      {"rosout", &message_type<topics::Rosout::Message>(), rosout_qos(), 0, "",
+       "The log: time, level, component, message."},
   }};
   return rows;
 }
@@ -214,6 +217,9 @@ const Topic& RunRecord::topic() {
 }
 const Topic& Diagnostics::topic() {
   return table()[kDiagnostics];
+}
+const Topic& Rosout::topic() {
+  return table()[kRosout];
 }
 
 }  // namespace topics

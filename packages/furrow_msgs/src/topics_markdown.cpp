@@ -17,6 +17,7 @@ std::string qos_text(const Qos& qos) {
   if (qos.liveliness_lease > Duration()) {
     text += ", liveliness lease " + milliseconds(qos.liveliness_lease);
   }
+  if (qos.lifespan > Duration()) text += ", lifespan " + milliseconds(qos.lifespan);
   return text;
 }
 

@@ -23,7 +23,12 @@ TEST(Topics, NamesAreUniqueAndPlain) {
 TEST(Topics, StructsFindTheirRow) {
   EXPECT_EQ(topics::Plan::topic().name, "planner/plan");
   EXPECT_EQ(topics::Plan::topic().type, &message_type<topics::Plan::Message>());
-  EXPECT_EQ(topics::Diagnostics::topic().name, "diagnostics");
+  EXPECT_EQ(topics::RobotDescription::topic().name, "robot_description");
+  EXPECT_EQ(topics::Instances::topic().name, "perception/instances");
+  EXPECT_EQ(topics::Markers::topic().name, "markers");
+  EXPECT_EQ(topics::TrueOdometry::topic().name, "truth/odometry");
+  EXPECT_EQ(topics::Rosout::topic().name, "rosout");
+  EXPECT_EQ(all_topics().back().name, "rosout");
 }
 
 TEST(Topics, MarkdownListsEach) {

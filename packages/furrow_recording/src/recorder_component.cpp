@@ -88,7 +88,7 @@ class RecorderComponent final : public graph::Component {
     if (parameters_.wait_for_disk) {
       recorder_.record_all(topic, came, came, std::move(message), type);
     } else if (!recorder_.record(topic, came, came, std::move(message), type)) {
-      context_.count("lost");
+      context_.warn("lost", "the disk is too slow; a message was not recorded");
     }
   }
 

@@ -58,6 +58,7 @@ msgs::Qos profile_from_yaml(const YAML::Node& node) {
                        : msgs::Durability::kVolatile;
   qos.depth = std::clamp(node["depth"].as<int>(0), 0, 100'000);
   qos.deadline = duration_from_yaml(node["deadline"]);
+  qos.lifespan = duration_from_yaml(node["lifespan"]);
   qos.liveliness_lease = duration_from_yaml(node["liveliness_lease_duration"]);
   return qos;
 }
@@ -129,8 +130,8 @@ std::string qos_to_yaml(const std::vector<msgs::Qos>& profiles) {
     yaml += "- history: 1\n  depth: " + std::to_string(qos.depth) +
             "\n  reliability: " + std::to_string(reliable ? kReliable : kBestEffort) +
             "\n  durability: " + std::to_string(latched ? kTransientLocal : kVolatile) + "\n" +
-            duration_to_yaml("deadline", qos.deadline) + duration_to_yaml("lifespan", {}) +
-            "  liveliness: 1\n" +
+            duration_to_yaml("deadline", qos.deadline) +
+            duration_to_yaml("lifespan", qos.lifespan) + "  liveliness: 1\n" +
             duration_to_yaml("liveliness_lease_duration", qos.liveliness_lease) +
             "  avoid_ros_namespace_conventions: false\n";
   }

@@ -32,6 +32,6 @@ using AllTopics =
               msgs::topics::ToolReset, msgs::topics::ToolEnable, msgs::topics::Markers,
               msgs::topics::TrueOdometry, msgs::topics::TrueField, msgs::topics::TrueInstances,
               msgs::topics::TrueSpray, msgs::topics::RunStatus, msgs::topics::RunRecord,
-              msgs::topics::Diagnostics>;
+              msgs::topics::Diagnostics, msgs::topics::Rosout>;
 
 }  // namespace furrow::recording

@@ -13,7 +13,8 @@ using msgs::Reliability;
 
 bool same(const msgs::Qos& a, const msgs::Qos& b) {
   return a.reliability == b.reliability && a.durability == b.durability && a.depth == b.depth &&
-         a.deadline == b.deadline && a.liveliness_lease == b.liveliness_lease;
+         a.deadline == b.deadline && a.liveliness_lease == b.liveliness_lease &&
+         a.lifespan == b.lifespan;
 }
 
 TEST(Names, TopicsGoBothWays) {
@@ -28,6 +29,7 @@ TEST(QosText, GoesBothWays) {
   msgs::Qos watched;
   watched.deadline = Duration::milliseconds(250);
   watched.liveliness_lease = Duration::seconds(3);
+  watched.lifespan = Duration::seconds(10);
   const std::vector<msgs::Qos> profiles = {
       msgs::latched_qos(), watched, {.reliability = Reliability::kBestEffort, .depth = 1}};
   const auto read = qos_from_yaml(qos_to_yaml(profiles));

@@ -1,8 +1,10 @@
 #include "furrow_supervisor/supervised_deployment.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "furrow_core/error.hpp"
@@ -10,10 +12,18 @@
 #include "furrow_graph/graph_check.hpp"
 #include "furrow_launch/installation.hpp"
 #include "furrow_launch/run_graph.hpp"
+#include "furrow_log/sinks.hpp"
 #include "furrow_supervisor/deployment_health.hpp"
 
 namespace furrow::supervisor {
 namespace {
+
+constexpr char kLogName[] = "supervisor";
+
+Time unix_time() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return Time::from_nanoseconds(std::chrono::nanoseconds(now).count());
+}
 
 std::string pick_host(const graph::DeploymentSpec& deployment, const std::string& wanted) {
   std::string names;
@@ -104,7 +114,24 @@ std::vector<SupervisedProcess> SupervisedDeployment::commands(
   return commands;
 }
 
+void SupervisedDeployment::open_logs(const std::filesystem::path& out, log::Log& own) const {
+  std::error_code failure;
+  std::filesystem::create_directories(out, failure);
+  if (failure) throw ConfigError("--out: " + out.string() + ": " + failure.message());
+  // Each process appends to its log, so that a restart keeps it.
+  for (const Process& process : processes_) {
+    const std::filesystem::path file = launch::log_file(out, process.name);
+    std::filesystem::remove(file, failure);
+    std::filesystem::remove(log::older_log(file), failure);
+  }
+  auto file = log::make_file_sink(launch::log_file(out, kLogName), log::Clock::kUnix);
+  if (!file.ok()) throw ConfigError("--out: " + out.string() + ": " + file.error().message);
+  own.add(*file);
+}
+
 int SupervisedDeployment::run(const RunParameters& parameters) const {
+  log::Log log({.repeat_period = Duration(), .now = unix_time});
+  open_logs(parameters.out, log);
   const auto server = make_discovery_server(deployment_, host_, dds_);
   DeploymentHealth health(dds_, parameters.resume);
   std::size_t width = 0;
@@ -116,6 +143,11 @@ int SupervisedDeployment::run(const RunParameters& parameters) const {
                                std::string line(width, ' ');
                                line.replace(0, name.size(), name);
                                parameters.show(line + " | " + text);
+                             },
+                         .on_event =
+                             [&log](const std::string& name, const std::string& text) {
+                               log.write_foreign(log::Level::kWarn, kLogName,
+                                                 name.empty() ? text : name + ": " + text);
                              },
                          .stop_reporter_first = options_.lockstep()});
   return supervisor.run();

@@ -77,16 +77,21 @@ int Supervisor::run() {
     }
     start_due();
     stop_when_due();
-    for (const std::string& line : options_.on_tick()) options_.show("", line);
+    for (const std::string& line : options_.on_tick()) tell("", line);
   }
   return result_;
+}
+
+void Supervisor::tell(const std::string& name, const std::string& text) {
+  options_.show(name, text);
+  if (options_.on_event) options_.on_event(name, text);
 }
 
 void Supervisor::start(Entry& entry) {
   entry.start_at.reset();
   auto child = ChildProcess::start(entry.process.command);
   if (!child.ok()) {
-    options_.show(entry.process.name, child.error().message);
+    tell(entry.process.name, child.error().message);
     result_ = 1;
     stop();
     return;
@@ -102,7 +107,7 @@ void Supervisor::take_signals() {
       hurry();
       continue;
     }
-    options_.show("", "interrupted: stopping all processes");
+    tell("", "interrupted: stopping all processes");
     if (options_.stop_reporter_first && reporter_alive()) {
       stop_reporter();
     } else {
@@ -152,12 +157,12 @@ void Supervisor::ended_well(Entry& entry) {
 void Supervisor::died(Entry& entry, int wait_status) {
   const std::string how = how_it_ended(wait_status);
   if (finished_) {
-    options_.show(entry.process.name, how + " at the end of the run");
+    tell(entry.process.name, how + " at the end of the run");
     if (entry.process.reports) result_ = 1;
     return;
   }
   if (!entry.process.restart) {
-    options_.show(entry.process.name, how + "; the run cannot go on without it");
+    tell(entry.process.name, how + "; the run cannot go on without it");
     result_ = 1;
     stop();
     return;
@@ -165,14 +170,14 @@ void Supervisor::died(Entry& entry, int wait_status) {
   const Time now = now_by_steady_clock();
   entry.start_at = entry.policy.after_death(now);
   if (!entry.start_at) {
-    options_.show(entry.process.name, how + ", too often: giving up");
+    tell(entry.process.name, how + ", too often: giving up");
     result_ = 1;
     stop();
     return;
   }
   result_ = 0;  // it may yet do what it is for
   const std::int64_t delay_ms = (*entry.start_at - now).count_ns() / 1'000'000;
-  options_.show(entry.process.name, how + "; started again in " + std::to_string(delay_ms) + " ms");
+  tell(entry.process.name, how + "; started again in " + std::to_string(delay_ms) + " ms");
 }
 
 void Supervisor::start_due() {
@@ -217,7 +222,7 @@ void Supervisor::stop_when_due() {
   if (finished_ && !stopping_ && now >= stop_at_) stop();
   for (Entry& entry : entries_) {
     if (!entry.child || !entry.kill_at || now < *entry.kill_at) continue;
-    options_.show(entry.process.name, "does not end: killed");
+    tell(entry.process.name, "does not end: killed");
     entry.child->send(SIGKILL);
     entry.kill_at = now + kStopGrace;
   }

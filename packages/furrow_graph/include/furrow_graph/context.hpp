@@ -13,6 +13,7 @@
 #include "furrow_core/time.hpp"
 #include "furrow_graph/health.hpp"
 #include "furrow_graph/transport.hpp"
+#include "furrow_log/level.hpp"
 #include "furrow_msgs/topics.hpp"
 
 namespace furrow::graph {
@@ -83,10 +84,19 @@ class Context {
   /// the call of the one before has not begun.
   virtual void every(Duration period, std::function<void(Time)> callback) = 0;
 
-  /// Sets the level that diagnostics show; kOk with an empty message clears it.
+  /// Sets the level that diagnostics show; kOk with an empty message clears it. A change is a line
+  /// of the log.
   virtual void health(HealthLevel level, std::string_view message) = 0;
   /// Adds to a counter that diagnostics show.
   virtual void count(std::string_view counter, std::int64_t by = 1) = 0;
+  /// Writes a line to the log, which names the component by itself. The message is one sentence:
+  /// "CAUSE; EFFECT". Repetitions are suppressed and counted.
+  virtual void log(log::Level level, std::string_view message) = 0;
+  /// Counts what was refused or dropped, and logs a warning.
+  void warn(std::string_view counter, std::string_view message) {
+    count(counter);
+    log(log::Level::kWarn, message);
+  }
   /// Ends the run after the current callbacks. The user sees the reason.
   virtual void request_stop(std::string_view reason) = 0;
 

@@ -11,6 +11,7 @@
 #include "furrow_graph/health.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/transport.hpp"
+#include "furrow_log/log.hpp"
 
 namespace furrow::graph {
 
@@ -28,6 +29,7 @@ struct RuntimeOptions {
   std::string process;                            ///< its name
   std::vector<PlacedProcess> processes = {};      ///< the whole deployment; empty: one
   std::function<Health()> transport_health = {};  ///< for the diagnostics; called once a second
+  log::Log* log = nullptr;  ///< outlives the runtime; also published on `rosout`. Null: no log
 };
 
 struct InputStatus {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct RunOptions {
   std::string out = "out/run";          ///< folder of the report
   std::string record;                   ///< path of the recording to make; empty: none
   std::vector<std::string> recordings;  ///< files to play in place of robot and camera
+  std::vector<std::string> log_levels;  ///< "LEVEL" or "COMPONENT=LEVEL"
 
   [[nodiscard]] bool lockstep() const { return clock == "lockstep"; }
 };
@@ -40,5 +42,9 @@ struct RunOptions {
 
 /// Arguments of `furrow` that run a process with the same options.
 [[nodiscard]] std::vector<std::string> run_arguments(const RunOptions& options);
+
+/// The log in the folder of the report: run.log, or run_PROCESS.log where `process` is not empty.
+[[nodiscard]] std::filesystem::path log_file(const std::filesystem::path& folder,
+                                             const std::string& process);
 
 }  // namespace furrow::launch

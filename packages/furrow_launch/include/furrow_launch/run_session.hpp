@@ -14,6 +14,7 @@
 #include "furrow_launch/run_observer.hpp"
 #include "furrow_launch/run_options.hpp"
 #include "furrow_launch/signals.hpp"
+#include "furrow_log/log.hpp"
 
 namespace furrow::launch {
 
@@ -36,6 +37,7 @@ class RunSession {
   struct Callbacks {
     RunObserver::Progress progress;                ///< see RunObserver
     std::function<void(const std::string&)> warn;  ///< one sentence for the user
+    log::Log* log = nullptr;                       ///< of the components; null: none
   };
 
   /// Prepares and checks the graph and picks the process. `process` may be empty where the
@@ -48,6 +50,10 @@ class RunSession {
   /// Whether the progress of the run is this process's to show.
   [[nodiscard]] bool shows_progress() const { return placed_.size() == 1 || reports(); }
   [[nodiscard]] const PreparedGraph& prepared() const { return prepared_; }
+  /// The name of this process; empty where the deployment has only one.
+  [[nodiscard]] std::string process_name() const {
+    return placed_.size() > 1 ? process_.name : std::string();
+  }
 
   /// Runs until the run is finished, or until a signal. The first signal asks for an end with the
   /// record of what was done so far; a second one, or five seconds, end the run as it is. To be

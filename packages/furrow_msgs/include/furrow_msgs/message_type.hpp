@@ -20,11 +20,11 @@ struct MessageType {
   std::shared_ptr<void> (*create)();
   /// Bytes of the CDR form, with its encapsulation header of four bytes.
   std::size_t (*serialized_size)(const void* message);
-  /// Writes the CDR form (XCDR1, little endian) and returns its size; kOutOfRange when `buffer` is
-  /// smaller than that.
+  /// Writes the CDR form (XCDR1, little endian) and returns its size. kOutOfRange: the buffer is
+  /// too small.
   Result<std::size_t> (*serialize)(const void* message, std::span<std::byte> buffer);
-  /// Reads a CDR form of either endianness; kParse when it is cut short or malformed, and then the
-  /// message's content is unspecified.
+  /// Reads a CDR form of either endianness. kParse: it is truncated or malformed; the message then
+  /// has unspecified content.
   Status (*deserialize)(std::span<const std::byte> buffer, void* message);
 };
 

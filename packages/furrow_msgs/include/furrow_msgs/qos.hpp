@@ -23,6 +23,7 @@ struct Qos {
   Duration liveliness_lease;  ///< how soon a dead writer is noticed; zero: not watched
   /// Readers also accept writers that offer best effort, without liveliness or deadline.
   bool accept_best_effort = false;
+  Duration lifespan = {};  ///< of a message on its way to other processes; zero: unlimited
 };
 
 /// The policies with which a reader requests more than a writer offers, and so is not matched, as
@@ -42,9 +43,16 @@ struct Qos {
 [[nodiscard]] constexpr Qos latched_qos() {
   return {.durability = Durability::kTransientLocal, .depth = 1};
 }
-/// Events, each of which counts.
+/// Events of which none may be lost.
 [[nodiscard]] constexpr Qos event_qos() {
   return {.depth = 1000};
+}
+
+/// The log, with the profile of ROS 2's /rosout.
+[[nodiscard]] constexpr Qos rosout_qos() {
+  return {.durability = Durability::kTransientLocal,
+          .depth = 1000,
+          .lifespan = Duration::milliseconds(10'000)};
 }
 
 }  // namespace furrow::msgs

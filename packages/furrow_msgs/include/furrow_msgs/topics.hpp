@@ -19,8 +19,8 @@ struct Topic {
   std::string_view description;  ///< with units
 };
 
-/// One struct per topic: it names the message class for the compiler and finds its row of the
-/// table (src/topics.cpp). Components are written against these.
+/// One struct per topic, for components: its message class, and its row of the table
+/// (src/topics.cpp).
 namespace topics {
 
 struct Clock {
@@ -170,6 +170,11 @@ struct RunRecord {
 
 struct Diagnostics {
   using Message = diagnostic_msgs::msg::DiagnosticArray;
+  [[nodiscard]] static const Topic& topic();
+};
+
+struct Rosout {
+  using Message = rcl_interfaces::msg::Log;
   [[nodiscard]] static const Topic& topic();
 };
 

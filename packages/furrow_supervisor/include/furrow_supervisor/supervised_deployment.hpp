@@ -8,6 +8,7 @@
 #include "furrow_dds/dds_parameters.hpp"
 #include "furrow_graph/graph_file.hpp"
 #include "furrow_launch/run_options.hpp"
+#include "furrow_log/log.hpp"
 #include "furrow_supervisor/supervisor.hpp"
 
 namespace furrow::supervisor {
@@ -39,6 +40,8 @@ class SupervisedDeployment {
     bool restart = true;
     bool reports = false;
   };
+  /// Opens the supervisor's log and removes the logs of earlier runs. Throws ConfigError.
+  void open_logs(const std::filesystem::path& out, log::Log& own) const;
   [[nodiscard]] std::vector<SupervisedProcess> commands(const RunParameters& parameters) const;
 
   launch::RunOptions options_;

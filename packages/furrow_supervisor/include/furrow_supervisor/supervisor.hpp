@@ -22,6 +22,9 @@ struct SupervisorOptions {
   std::function<std::vector<std::string>()> on_tick;
   /// Takes a line of a process, or of the supervisor itself (name ""). On the thread of run().
   std::function<void(const std::string& name, const std::string& text)> show;
+  /// Takes a line of the supervisor itself, which is shown too: about the process `name`, or about
+  /// the deployment (name ""). May be empty.
+  std::function<void(const std::string& name, const std::string& text)> on_event = {};
   /// On a signal, the other processes keep running until the one that reports has ended: in
   /// lock-step it cannot make another step without them.
   bool stop_reporter_first = false;
@@ -45,6 +48,7 @@ class Supervisor {
  private:
   struct Entry;
 
+  void tell(const std::string& name, const std::string& text);
   void start(Entry& entry);
   void take_signals();
   void read_output(Entry& entry);
