@@ -37,7 +37,7 @@ ReportTable nozzle_table(const RunRecord& record) {
   return table;
 }
 
-/// Each spray counts for the crop row that it is nearest to.
+/// Each spray counts for the nearest crop row.
 ReportTable row_table(const RunRecord& record, const std::vector<Application>& applications) {
   ReportTable table{"Use by crop row", {"row at y", "sprays", "volume", "per metre"}, {}};
   std::vector<double> rows_m = record.field().row_y_m();
@@ -64,7 +64,7 @@ ReportTable row_table(const RunRecord& record, const std::vector<Application>& a
   return table;
 }
 
-/// The strip that the nozzles can reach, as far as the robot drove over the field.
+/// The reach of the nozzles times the distance over the field.
 double covered_area_m2(const RunRecord& record, const geometry::ToolModel& tool) {
   double left_m = 0.0;
   double right_m = 0.0;
@@ -91,7 +91,7 @@ ReportTable area_table(const RunRecord& record, const std::vector<Application>& 
   table.rows.push_back({"sprayed", fixed(sprayed_m2, 3) + " m2"});
   if (covered_m2 > 0.0) {
     table.rows.push_back({"sprayed of covered", fixed(100.0 * sprayed_m2 / covered_m2, 2) + " %"});
-    constexpr double kLitresPerHectare = 10.0;  // in a ml per m2
+    constexpr double kLitresPerHectare = 10.0;  // per ml/m2
     table.rows.push_back(
         {"volume over covered", fixed(kLitresPerHectare * volume_ml / covered_m2, 1) + " l/ha"});
   }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,7 +77,10 @@ class AxisDriverComponent final : public graph::Component {
                   parameters_.nozzle.close_delay_s) {
     if (latches_) {
       controller_.safety().restore(latches_->loaded(), context.now());
-      if (!latches_->loaded().empty()) context.count("latches_restored");
+      if (!latches_->loaded().empty()) {
+        context.warn("latches_restored",
+                     "the safe state of before the restart holds until tool/reset");
+      }
     }
     bind_inputs(context);
     context.every(Duration::seconds(1.0 / parameters_.rate_hz), [this](Time now) { control(now); });
@@ -128,7 +130,7 @@ class AxisDriverComponent final : public graph::Component {
     }
     // The plan's stamp is that of its newest image; for the deadline it counts when it came.
     if (const Status taken = controller_.set_plan(context_.arrival(), stops_); !taken.ok()) {
-      context_.count("bad_plans");
+      context_.warn("bad_plans", taken.error().message + "; the plan was not used");
     }
   }
 
@@ -149,7 +151,7 @@ class AxisDriverComponent final : public graph::Component {
     if (!message.axis().empty() && message.axis() != axis_.name) return;
     const auto cause = msgs::from_msg(message.cause());
     if (!cause.ok()) {
-      context_.count("unknown_values");
+      context_.warn("unknown_values", cause.error().message + "; nothing was reset");
       return;
     }
     loop_.request_reset(context_.now(), safety_cause(*cause));
@@ -179,7 +181,7 @@ class AxisDriverComponent final : public graph::Component {
 
   void tell_at_exit(const char* what) {
     context_.count("not_confirmed_at_exit");
-    std::cerr << "furrow: " << context_.name() << ": not confirmed at the exit: " << what << '\n';
+    context_.log(log::Level::kError, std::string("not confirmed at the exit: ") + what);
   }
 
   graph::Context& context_;

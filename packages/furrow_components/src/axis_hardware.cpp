@@ -11,13 +11,14 @@ class SimulatedElsewhere final : public actuation::ValveDriver {
 }  // namespace
 
 void AxisHardwareParameters::visit(ParameterVisitor& v) {
-  v.visit({.name = "driver",
-           .description = "simulated: a servo within the URDF's limits; cia402_modbus: a CiA 402 "
-                          "drive behind a Modbus TCP gateway (drive_*)",
-           .choices = {"simulated", "cia402_modbus"}},
-          driver);
+  v.visit(
+      {.name = "driver",
+       .description = "simulated: a servo with the limits of the URDF; cia402_modbus: a CiA 402 "
+                      "drive behind a Modbus TCP gateway (drive_*)",
+       .choices = {"simulated", "cia402_modbus"}},
+      driver);
   v.visit({.name = "valve",
-           .description = "simulated: the robot's simulator sprays; modbus_coils: an output module "
+           .description = "simulated: the simulator of the robot sprays; modbus_coils: an output "
                           "(coil_*); gpio: a line of this computer (gpio_*)",
            .choices = {"simulated", "modbus_coils", "gpio"}},
           valve);
@@ -30,7 +31,7 @@ void AxisHardwareParameters::visit(ParameterVisitor& v) {
   PrefixedVisitor gpio_visitor(v, "gpio_");
   gpio.visit(gpio_visitor);
   v.visit({.name = "stop_input",
-           .description = "an emergency stop beside the topic; gpio: a line of this computer "
+           .description = "emergency stop input beside the topic; gpio: a line of this computer "
                           "(stop_gpio_*)",
            .choices = {"none", "gpio"}},
           stop_input);

@@ -11,7 +11,7 @@
 
 namespace furrow::components {
 
-/// Which drive moves an axis, and what its valve and an emergency stop are wired to.
+/// The drive of an axis, its valve and its emergency stop input.
 struct AxisHardwareParameters {
   std::string driver = "simulated";
   std::string valve = "simulated";
@@ -28,8 +28,8 @@ struct AxisHardwareParameters {
 /// Throws ConfigError.
 [[nodiscard]] std::unique_ptr<actuation::AxisDriver> make_axis_driver(
     const AxisHardwareParameters& parameters, const actuation::MotionLimits& limits);
-/// Throws ConfigError. A simulated valve takes its level and does nothing: where it sprays, the
-/// robot's simulator works out from the driver's events.
+/// Throws ConfigError. A simulated valve does nothing: the simulator of the robot computes the
+/// spray from the driver's events.
 [[nodiscard]] std::unique_ptr<actuation::ValveDriver> make_valve(
     const AxisHardwareParameters& parameters);
 /// Null when there is none. Throws ConfigError.

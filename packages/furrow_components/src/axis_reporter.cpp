@@ -32,9 +32,9 @@ AxisReporter::AxisReporter(graph::Context& context, std::string axis, double flo
 
 void AxisReporter::report(Time now, const actuation::CycleReport& cycle,
                           const actuation::AxisReading& reading) {
-  if (!cycle.read_ok) context_.count("read_errors");
-  if (!cycle.valve_ok) context_.count("valve_errors");
-  if (!cycle.write_ok) context_.count("write_errors");
+  if (!cycle.read_ok) context_.warn("read_errors", "the drive could not be read");
+  if (!cycle.valve_ok) context_.warn("valve_errors", "the valve could not be switched");
+  if (!cycle.write_ok) context_.warn("write_errors", "the drive took no command");
   for (std::size_t i = 0; i < cycle.output.events.size(); ++i) {
     handle(cycle.output.events[i], cycle.valve_written);
   }
@@ -59,10 +59,12 @@ void AxisReporter::handle(const ControllerEvent& event, Time valve_written) {
       entered_safe_state(event, valve_written);
       break;
     case ControllerEventKind::kReset:
+      context_.log(log::Level::kInfo, "reset: " + std::string(to_string(event.cause)) + " ended");
       publish(event, AxisEventKind::kReset);
       break;
     case ControllerEventKind::kResetRefused:
-      context_.count("resets_refused");
+      context_.warn("resets_refused", "reset refused: " + std::string(to_string(event.cause)) +
+                                          " persists; the tool stays in its safe state");
       publish(event, AxisEventKind::kResetRefused);
       break;
   }
@@ -74,6 +76,7 @@ void AxisReporter::publish(const ControllerEvent& event, AxisEventKind kind) {
 
 void AxisReporter::entered_safe_state(const ControllerEvent& event, Time valve_written) {
   context_.count("safe_states");
+  context_.log(log::Level::kError, "safe state entered: " + std::string(to_string(event.cause)));
   auto message = to_msg(event, axis_, AxisEventKind::kSafeState);
   message.opened(graph::to_msg(event.time));
   message.closed(graph::to_msg(valve_written));

@@ -39,49 +39,51 @@ struct Parameters {
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
-    v.visit({.name = "field_file", .description = "preset (YAML), or plants (CSV, GeoJSON)"},
+    v.visit({.name = "field_file", .description = "field preset (YAML), or plants (CSV, GeoJSON)"},
             field_file);
-    v.visit({.name = "species_file", .description = "table of species; empty: Furrow's own"},
+    v.visit({.name = "species_file", .description = "table of species; empty: the built-in one"},
             species_file);
     v.visit({.name = "length_m",
              .unit = "m",
-             .description = "length of a generated field, or of the photographs laid out",
+             .description = "length of a generated field, or of a field of photographs",
              .min = 0.5,
              .max = 10000.0},
             length_m);
+    v.visit({.name = "camera_rate_hz",
+             .unit = "Hz",
+             .description = "rate of the images",
+             .min = 0.1,
+             .max = 100.0},
+            camera_rate_hz);
+    v.visit({.name = "render", .description = "false: no images, only truth/instances"}, render);
     v.visit(
-        {.name = "camera_rate_hz", .unit = "Hz", .description = "images", .min = 0.1, .max = 100.0},
-        camera_rate_hz);
-    v.visit({.name = "render",
-             .description = "false: no images, only what a perfect detector would tell"},
-            render);
-    v.visit({.name = "true_masks",
-             .description = "whether the truth of a rendered image holds what it shows of each "
-                            "plant: mask and its box, empty where it shows nothing"},
-            true_masks);
+        {.name = "true_masks",
+         .description = "truth/instances hold the mask and box of each plant as rendered, empty "
+                        "where it is not visible"},
+        true_masks);
     v.visit({.name = "photos_folder",
-             .description = "annotated photographs as the ground (CWFID or Carrot-Weed as they are "
-                            "published); empty: the ground is rendered"},
+             .description = "annotated photographs as the ground, in the layout of CWFID or "
+                            "Carrot-Weed; empty: the ground is rendered"},
             photos_folder);
     v.visit({.name = "photo_resolution_mm_per_px",
              .unit = "mm/px",
-             .description = "of the photographs on the ground",
+             .description = "resolution of the photographs on the ground",
              .min = 0.01,
              .max = 100.0},
             photo_resolution_mm_per_px);
     v.visit({.name = "photo_quarter_turns",
-             .description = "turns of the photographs, counter-clockwise",
+             .description = "quarter turns of the photographs, counter-clockwise",
              .min = 0,
              .max = 3},
             photo_quarter_turns);
     v.visit({.name = "photo_limit",
-             .description = "photographs taken from the folder",
+             .description = "most photographs to use from the folder",
              .min = 1,
              .max = 1000},
             photo_limit);
     v.visit({.name = "photo_width_m",
              .unit = "m",
-             .description = "width laid out with photographs",
+             .description = "width covered with photographs",
              .min = 0.1,
              .max = 20.0},
             photo_width_m);
@@ -108,11 +110,11 @@ std::unique_ptr<simulation::Scene> make_scene(const Parameters& parameters, std:
       parameters.renderer, seed);
 }
 
-/// The simulated down-facing RGB-D camera, and the field that it looks at.
+/// Simulates a down-facing RGB-D camera and the field below it.
 class CameraSimulator final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Simulated RGB-D camera over a rendered field or over photographs, with the truth.")
+    d.doc("Simulates an RGB-D camera over a rendered field or photographs, with ground truth.")
         .parameters<Parameters>()
         .input<topics::TrueOdometry>()
         .output<topics::TrueField>()
@@ -160,7 +162,7 @@ class CameraSimulator final : public graph::Component {
     context_.count("images");
   }
 
-  // Plants stand in the order of x: only the stretch under the camera is looked at.
+  // Plants are sorted by x: only those near the camera are visited.
   [[nodiscard]] furrow_msgs::msg::PlantInstances true_instances(Time stamp,
                                                                 const Eigen::Isometry3d& X_FC,
                                                                 const cv::Mat* plant_index) const {

@@ -42,7 +42,7 @@ ColorRGBA color(std::string_view hex, float alpha) {
   return result;
 }
 
-/// RViz tells markers apart by 32 bits.
+/// Ids of RViz have 32 bits.
 std::int32_t marker_id(std::int64_t id) {
   return static_cast<std::int32_t>(id & 0x7fffffff);
 }
@@ -103,7 +103,7 @@ ColorRGBA FieldMarkers::plant_color(const Track& track) const {
   if (track.crop_probability() >= crop_threshold_) return color(ledger::palette::kCrop, alpha);
   const auto decided = decisions_.find(track.id());
   if (decided == decisions_.end()) return color(ledger::palette::kTreated, alpha);
-  // What is to be treated stands out, in the colour that the map has for what was missed.
+  // Weeds to treat get the colour that the map has for missed weeds.
   if (decided->second == msgs::DecisionKind::kTreat) return color(ledger::palette::kMissed, alpha);
   return color(ledger::palette::kLeft, alpha);
 }
@@ -122,7 +122,7 @@ MarkerArray FieldMarkers::plan(const furrow_msgs::msg::Plan& message) {
     line.scale().x(kLineWidth_m);
     line.color(color(ledger::axis_color(axis->second.index), kSolid));
     for (const auto& stop : route.stops()) line.points().push_back(stop.aim());
-    // RViz refuses a line of one point.
+    // RViz rejects a line of one point.
     if (line.points().size() == 1) line.points().push_back(line.points().front());
     if (line.points().empty()) line.action(Constants::DELETE);
     result.markers().push_back(std::move(line));

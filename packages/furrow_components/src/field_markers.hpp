@@ -11,22 +11,21 @@
 
 namespace furrow::components {
 
-/// What RViz draws of a run, in the field frame: plants as discs in the colour of what they are and
-/// what was decided, the routes of the axes as lines through their aims, sprays as the footprint
-/// where it landed. Bounded: plants go with their tracks, the oldest spray is drawn over.
+/// Markers of a run for RViz, in the field frame. Plants are discs, coloured by class and decision.
+/// Routes are lines through their aims, sprays are footprints at their landing. Bounded: plants are
+/// deleted with their tracks, and a new spray replaces the oldest one.
 class FieldMarkers {
  public:
   static constexpr std::int32_t kMaxSprays = 2000;
 
-  /// The model is copied from. Tracks at or above the threshold are drawn as crop.
+  /// Tracks with at least this crop probability are drawn as crop. The model is not kept.
   explicit FieldMarkers(const geometry::ToolModel& tool, double crop_threshold = 0.5);
 
-  /// Every track that has not ended, in namespace "plants"; those that were there before and are
-  /// not any more are deleted.
+  /// Every track that is not deleted, in namespace "plants". Markers of other tracks are deleted.
   [[nodiscard]] visualization_msgs::msg::MarkerArray plants(
       const furrow_msgs::msg::Tracks& message);
-  /// A line per axis, in namespace "plan"; deleted when its route is empty. The decisions colour
-  /// the plants from then on.
+  /// A line per axis, in namespace "plan", deleted when its route is empty. The decisions colour
+  /// the plants of later calls.
   [[nodiscard]] visualization_msgs::msg::MarkerArray plan(const furrow_msgs::msg::Plan& message);
   /// The footprint of a spray, in namespace "sprays"; empty for other events.
   [[nodiscard]] visualization_msgs::msg::MarkerArray spray(

@@ -35,7 +35,7 @@ field::FieldModel load_field(const std::filesystem::path& path, const field::Spe
   }
   if (extension != ".yaml") {
     throw ConfigError({path.string(), 0}, "",
-                      "is not a field: .yaml (a preset), .csv or .geojson is needed");
+                      "is not a field file: use .yaml (a preset), .csv or .geojson");
   }
   auto parameters = graph::load_parameter_file<field::FieldParameters>(path);
   if (length_m > 0.0) parameters.length_m = length_m;

@@ -43,10 +43,11 @@ Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message) {
     if (message.encoding() == encoding.name) type = encoding.type;
   }
   if (type < 0) {
-    return Error{ErrorCode::kInvalidArgument, "image encoding '" + message.encoding() + "'"};
+    return Error{ErrorCode::kInvalidArgument,
+                 "image encoding '" + message.encoding() + "' is not supported"};
   }
   if (message.is_bigendian() != 0 && CV_ELEM_SIZE1(type) > 1) {
-    return Error{ErrorCode::kInvalidArgument, "image is big endian"};
+    return Error{ErrorCode::kInvalidArgument, "big-endian images are not supported"};
   }
   constexpr std::uint32_t kMaxSide_px = 1u << 15;
   const std::size_t row = static_cast<std::size_t>(CV_ELEM_SIZE(type)) * message.width();
@@ -55,9 +56,9 @@ Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message) {
       message.height() <= kMaxSide_px && message.step() >= row &&
       message.data().size() >= std::size_t{message.step()} * (message.height() - 1) + row;
   if (!fits) {
-    return Error{ErrorCode::kInvalidArgument, "image size does not match its data"};
+    return Error{ErrorCode::kInvalidArgument, "the image size does not match its data"};
   }
-  // cv::Mat has no read-only form; the contract forbids writing.
+  // cv::Mat has no read-only form. The contract of view_of() forbids writing.
   auto* data = const_cast<std::uint8_t*>(message.data().data());
   return cv::Mat(static_cast<int>(message.height()), static_cast<int>(message.width()), type, data,
                  message.step());
@@ -68,7 +69,7 @@ Result<cv::Mat> bgr_of(const sensor_msgs::msg::Image& message) {
   if (!view.ok()) return view;
   if (view->type() != CV_8UC3) {
     return Error{ErrorCode::kInvalidArgument,
-                 "image encoding '" + message.encoding() + "' is not a colour image of 8 bits"};
+                 "image encoding '" + message.encoding() + "' is not an 8-bit colour image"};
   }
   if (message.encoding() != "rgb8") return view;
   cv::Mat bgr;
@@ -81,7 +82,7 @@ Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message) {
   if (!view.ok() || view->type() == CV_32FC1) return view;
   if (view->type() != CV_16UC1) {
     return Error{ErrorCode::kInvalidArgument,
-                 "image encoding '" + message.encoding() + "' is not a depth"};
+                 "image encoding '" + message.encoding() + "' is not a depth image"};
   }
   cv::Mat depth_m;
   view->convertTo(depth_m, CV_32F, 1e-3);
@@ -109,18 +110,19 @@ std::vector<std::uint32_t> mask_runs(const cv::Mat& mask) {
 
 Result<cv::Mat> mask_from_runs(const std::vector<std::uint32_t>& runs, int width_px,
                                int height_px) {
-  if (width_px < 0 || height_px < 0) return Error{ErrorCode::kParse, "mask of negative size"};
+  if (width_px < 0 || height_px < 0)
+    return Error{ErrorCode::kParse, "the mask has a negative size"};
   cv::Mat mask(height_px, width_px, CV_8UC1, cv::Scalar(0));
   const std::size_t total = mask.total();
   std::size_t at = 0;
   bool inside = false;
   for (const std::uint32_t run : runs) {
-    if (run > total - at) return Error{ErrorCode::kParse, "mask runs exceed the box"};
+    if (run > total - at) return Error{ErrorCode::kParse, "the mask is longer than its box"};
     if (inside) std::fill_n(mask.data + at, run, std::uint8_t{255});
     at += run;
     inside = !inside;
   }
-  if (at != total) return Error{ErrorCode::kParse, "mask runs do not fill the box"};
+  if (at != total) return Error{ErrorCode::kParse, "the mask does not fill its box"};
   return mask;
 }
 

@@ -30,36 +30,33 @@ struct Parameters {
 
   void visit(ParameterVisitor& v) {
     v.visit({.name = "estimator",
-             .description = "odometry: wheels alone, dead-reckoned; filter: wheels, IMU and GNSS "
-                            "fused, whichever of them come",
+             .description = "odometry: dead reckoning by the wheels; filter: fusion of wheels, IMU "
+                            "and GNSS, as far as they are published",
              .choices = {"odometry", "filter"}},
             estimator);
     v.visit({.name = "start",
-             .description = "wheels: where the wheels' first message says; parameters: at the "
-                            "initial pose below",
+             .description = "wheels: at the pose of the first wheel/odometry; parameters: at the "
+                            "initial pose of the parameters",
              .choices = {"wheels", "parameters"}},
             start);
     v.visit({.name = "speed_variance",
              .unit = "(m/s)2",
-             .description = "of the wheels, where the message tells none",
+             .description = "of the wheels, where the message has none",
              .min = 0.0},
             speed_variance);
     v.visit({.name = "yaw_rate_variance",
              .unit = "(rad/s)2",
-             .description = "of the wheels, where the message tells none",
+             .description = "of the wheels, where the message has none",
              .min = 0.0},
             yaw_rate_variance);
     v.visit({.name = "imu_yaw_rate_variance",
              .unit = "(rad/s)2",
-             .description = "of the gyroscope, where the message tells none",
+             .description = "of the gyroscope, where the message has none",
              .min = 0.0},
             imu_yaw_rate_variance);
-    v.visit({.name = "tf_rate_hz",
-             .unit = "Hz",
-             .description = "transforms for viewers",
-             .min = 0.1,
-             .max = 200.0},
-            tf_rate_hz);
+    v.visit(
+        {.name = "tf_rate_hz", .unit = "Hz", .description = "rate of tf", .min = 0.1, .max = 200.0},
+        tf_rate_hz);
     odometry.visit(v);
     PrefixedVisitor filter_visitor(v, "filter_");
     filter.visit(filter_visitor);
@@ -76,7 +73,7 @@ std::unique_ptr<localization::PoseEstimator> make_estimator(const Parameters& pa
   return std::make_unique<localization::OdometryIntegrator>(parameters.odometry);
 }
 
-/// How well the first pose of the wheels is known: dead reckoning takes it as exact.
+/// The covariance of the first pose of the wheels: dead reckoning takes it as exact.
 Eigen::Matrix3d start_covariance(const Parameters& parameters) {
   if (parameters.estimator != "filter") return Eigen::Matrix3d::Zero();
   const double position_m = parameters.filter.initial_position_sigma_m;
@@ -86,8 +83,8 @@ Eigen::Matrix3d start_covariance(const Parameters& parameters) {
       .asDiagonal();
 }
 
-double told_or(double told, double otherwise) {
-  return told > 0.0 ? told : otherwise;
+double positive_or(double value, double otherwise) {
+  return value > 0.0 ? value : otherwise;
 }
 
 graph::HealthLevel to_health(localization::HealthLevel level) {
@@ -102,11 +99,11 @@ graph::HealthLevel to_health(localization::HealthLevel level) {
   return graph::HealthLevel::kError;
 }
 
-/// Where the base is in the field frame, at the rate of the wheels.
+/// Estimates the pose of the base in the field frame, at the rate of the wheels.
 class Localization final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Pose of the base in the field frame.")
+    d.doc("Estimates the pose of the base in the field frame.")
         .parameters<Parameters>()
         .input<topics::WheelOdometry>()
         .input<topics::Imu>(graph::Need::kOptional)
@@ -130,8 +127,8 @@ class Localization final : public graph::Component {
                                 message->angular_velocity().z());
       count("imu_", estimator_->add(localization::ImuYawRate{
                         graph::from_msg(message->header().stamp()), message->angular_velocity().z(),
-                        told_or(message->angular_velocity_covariance()[8],
-                                parameters_.imu_yaw_rate_variance)}));
+                        positive_or(message->angular_velocity_covariance()[8],
+                                    parameters_.imu_yaw_rate_variance)}));
     });
     context.input<topics::GnssFix>([this](const auto& message) {
       count("gnss_", estimator_->add(georeference_.from_msg(*message)));
@@ -144,26 +141,28 @@ class Localization final : public graph::Component {
   void count(const std::string& sensor, localization::Outcome outcome) {
     if (outcome == localization::Outcome::kUsed) return;
     if (outcome == localization::Outcome::kIgnored) return;
-    context_.count(sensor + std::string(localization::to_string(outcome)));
+    const std::string reason(localization::to_string(outcome));
+    context_.warn(sensor + reason, "a measurement of " + sensor.substr(0, sensor.size() - 1) +
+                                       " was " + reason + "; it was not used");
   }
 
   void measured(const nav_msgs::msg::Odometry& message) {
     const BaseOdometry wheels = from_msg(message);
-    // The frame that wheels start in is the field frame; only its first pose is taken over.
+    // The frame in which the wheels start is the field frame. Only their first pose is used.
     if (!started_) {
       const Status reset =
           estimator_->reset(wheels.stamp, wheels.X_FB, start_covariance(parameters_));
       if (!reset.ok()) {
-        context_.count("rejected");
+        context_.warn("rejected", reset.error().message + "; the start pose was not used");
         return;
       }
       started_ = true;
     }
     standstill_.add_wheels(wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps);
-    const auto& told = message.twist().covariance();
+    const auto& variances = message.twist().covariance();
     localization::WheelOdometry measured{wheels.stamp, wheels.speed_mps, wheels.yaw_rate_radps,
-                                         told_or(told[0], parameters_.speed_variance),
-                                         told_or(told[35], parameters_.yaw_rate_variance)};
+                                         positive_or(variances[0], parameters_.speed_variance),
+                                         positive_or(variances[35], parameters_.yaw_rate_variance)};
     // Of a robot that stands more is known than its wheels measure.
     if (standstill_.standing()) measured.speed_mps = measured.yaw_rate_radps = 0.0;
     count("wheels_", estimator_->add(measured));
@@ -172,19 +171,20 @@ class Localization final : public graph::Component {
 
   void publish_pose(Time stamp) {
     const auto health = estimator_->health(stamp);
-    context_.health(to_health(health.level), health.level == localization::HealthLevel::kOk
-                                                 ? ""
-                                                 : "the pose is uncertain or old");
+    context_.health(to_health(health.level),
+                    health.level == localization::HealthLevel::kOk
+                        ? ""
+                        : "the pose is uncertain or old; tools may enter their safe state");
     const auto estimate = estimator_->predict(stamp);
     if (!estimate.ok()) {
-      context_.count("no_pose");
+      context_.warn("no_pose", estimate.error().message + "; no pose was published");
       return;
     }
     newest_ = BaseOdometry{estimate->stamp, estimate->X_FB, estimate->speed_mps,
                            estimate->yaw_rate_radps};
     hold_while_standing();
     nav_msgs::msg::Odometry message = to_msg(newest_, kFieldFrame);
-    // Row-major 6x6 over (x, y, z, roll, pitch, yaw), as ROS has it.
+    // Row-major 6x6 over (x, y, z, roll, pitch, yaw), as in ROS.
     constexpr std::size_t kIndex[] = {0, 1, 5};
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {

@@ -17,14 +17,14 @@ struct Parameters {
   void visit(ParameterVisitor& v) {
     tool.visit(v);
     v.visit({.name = "crop_threshold",
-             .description = "tracks at or above this probability are drawn as crop: the planner's",
+             .description = "tracks with at least this crop probability are drawn as crop",
              .min = 0.0,
              .max = 1.0},
             crop_threshold);
   }
 };
 
-/// Shows plants, plan and sprays to viewers of ROS 2.
+/// Publishes plants, plan and sprays as markers.
 class Markers final : public graph::Component {
  public:
   static void describe(graph::Description& d) {

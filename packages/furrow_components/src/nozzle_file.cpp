@@ -8,7 +8,7 @@
 namespace furrow::components {
 
 void CalibratedNozzle::visit(ParameterVisitor& v) {
-  v.visit({.name = "axis", .description = "joint of the URDF that carries the nozzle"}, axis);
+  v.visit({.name = "axis", .description = "joint of the nozzle in the URDF"}, axis);
   calibration.visit(v);
 }
 
@@ -17,10 +17,11 @@ std::vector<CalibratedNozzle> load_nozzle_file(const std::filesystem::path& path
   std::set<std::string> seen;
   for (const CalibratedNozzle& nozzle : nozzles) {
     if (nozzle.axis.empty()) {
-      throw ConfigError({path.string(), 0}, "nozzles", "an entry does not name its axis");
+      throw ConfigError({path.string(), 0}, "nozzles", "an entry has no axis");
     }
     if (!seen.insert(nozzle.axis).second) {
-      throw ConfigError({path.string(), 0}, "nozzles", "'" + nozzle.axis + "' stands there twice");
+      throw ConfigError({path.string(), 0}, "nozzles",
+                        "axis '" + nozzle.axis + "' has two entries");
     }
   }
   return nozzles;
@@ -31,8 +32,7 @@ actuation::NozzleCalibration load_nozzle(const std::filesystem::path& path,
   const auto nozzles = load_nozzle_file(path);
   const auto it = std::ranges::find(nozzles, axis, &CalibratedNozzle::axis);
   if (it == nozzles.end()) {
-    throw ConfigError({path.string(), 0}, "nozzles",
-                      "there is no entry for the axis '" + axis + "'");
+    throw ConfigError({path.string(), 0}, "nozzles", "axis '" + axis + "' has no entry");
   }
   return it->calibration;
 }

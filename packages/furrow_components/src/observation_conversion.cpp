@@ -14,13 +14,13 @@ Result<tracking::GroundMask> footprint(const furrow_msgs::msg::PlantInstance& in
   const auto& image = camera.intrinsics();
   if (pixels >
       static_cast<std::uint64_t>(image.width_px) * static_cast<std::uint64_t>(image.height_px)) {
-    return Error{ErrorCode::kParse, "the box is greater than the image"};
+    return Error{ErrorCode::kParse, "the box is larger than the image"};
   }
   std::vector<Eigen::Vector2d> points_F;
   std::uint64_t at = 0;
   bool inside = false;
   for (const std::uint64_t run : instance.mask_runs()) {
-    if (run > pixels - at) return Error{ErrorCode::kParse, "the mask runs over its box"};
+    if (run > pixels - at) return Error{ErrorCode::kParse, "the mask is longer than its box"};
     for (std::uint64_t i = at; inside && i < at + run; ++i) {
       const Eigen::Vector2d pixel(static_cast<double>(box.x_offset() + i % width),
                                   static_cast<double>(box.y_offset() + i / width));
@@ -37,7 +37,7 @@ Result<tracking::GroundMask> footprint(const furrow_msgs::msg::PlantInstance& in
 void ObservationParameters::visit(ParameterVisitor& v) {
   v.visit({.name = "pixel_noise_px",
            .unit = "px",
-           .description = "standard deviation of a stem's pixel",
+           .description = "standard deviation of the pixel of a stem",
            .min = 0.01,
            .max = 100.0},
           pixel_noise_px);
@@ -47,13 +47,13 @@ void ObservationParameters::visit(ParameterVisitor& v) {
            .min = 1e-4,
            .max = 1.0},
           depth_noise_m);
-  v.visit({.name = "footprints",
-           .description = "whether masks are carried to the ground; of use to the association iou, "
-                          "which else compares circles"},
-          footprints);
+  v.visit(
+      {.name = "footprints",
+       .description = "project masks to the ground; the association iou uses them, else circles"},
+      footprints);
   v.visit({.name = "footprint_cell_m",
            .unit = "m",
-           .description = "grid of the masks on the ground",
+           .description = "cell size of masks on the ground",
            .min = 0.0005,
            .max = 0.1},
           footprint_cell_m);

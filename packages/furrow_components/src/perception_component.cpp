@@ -26,29 +26,28 @@ struct Parameters {
     detector.visit(v);
     v.visit({.name = "ground_distance_m",
              .unit = "m",
-             .description = "camera to ground, where the depth image says nothing",
+             .description = "distance from camera to ground where depth is unknown",
              .min = 0.05,
              .max = 20.0},
             ground_distance_m);
     v.visit({.name = "min_score",
-             .description = "instances below are left out",
+             .description = "instances with a lower score are not published",
              .min = 0.0,
              .max = 1.0},
             min_score);
     v.visit({.name = "use_depth",
-             .description = "false: images are taken as they come, with ground_distance_m as the "
-                            "depth everywhere"},
+             .description = "false: images are used without depth, at ground_distance_m"},
             use_depth);
     PrefixedVisitor growth_visitor(v, "stage_");
     growth.visit(growth_visitor);
   }
 };
 
-/// Finds the plants of each image.
+/// Detects the plants of each image.
 class Perception final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Plants of each image: class, mask, stem, area.")
+    d.doc("Detects the plants of each image: class, mask, stem, area.")
         .parameters<Parameters>()
         .input<topics::CameraImage>()
         .input<topics::CameraDepth>(graph::Need::kOptional)
@@ -69,7 +68,10 @@ class Perception final : public graph::Component {
       detect_when_complete();
     });
     context.input<topics::CameraImage>([this](const auto& image) {
-      if (image_ != nullptr) context_.count("images_without_depth");
+      if (image_ != nullptr) {
+        context_.warn("images_without_depth",
+                      "no depth image with the stamp of the colour image; no plant was detected");
+      }
       image_ = image;
       detect_when_complete();
     });
@@ -84,7 +86,7 @@ class Perception final : public graph::Component {
     }
   }
 
-  // Image and depth of one exposure carry the same stamp and come in either order.
+  // Image and depth of one exposure have the same stamp and arrive in either order.
   void detect_when_complete() {
     if (image_ == nullptr) return;
     if (parameters_.use_depth &&
@@ -94,12 +96,12 @@ class Perception final : public graph::Component {
     const auto image = std::exchange(image_, nullptr);
     const auto depth = std::exchange(depth_, nullptr);
     if (!camera_) {
-      context_.count("images_before_camera_info");
+      context_.warn("images_before_camera_info", "no camera_info received; the image was not used");
       return;
     }
     if (const Status done = detect(*image, depth.get()); !done.ok()) {
       context_.count("bad_images");
-      context_.health(graph::HealthLevel::kWarn, done.error().message);
+      context_.health(graph::HealthLevel::kWarn, done.error().message + "; no plant was detected");
     }
   }
 

@@ -38,7 +38,7 @@ std::vector<simulation::GroundPhoto> load_ground_photos(const std::filesystem::p
     }
     photos.push_back(to_photo(image));
   }
-  if (photos.empty()) throw ConfigError({folder.string(), 0}, "", "holds no photographs");
+  if (photos.empty()) throw ConfigError({folder.string(), 0}, "", "has no photographs");
   return photos;
 }
 

@@ -12,7 +12,7 @@
 
 namespace furrow::components {
 
-/// The wire's word for a decision of the planner.
+/// The enumeration of the message for a decision of the planner.
 [[nodiscard]] msgs::DecisionKind decision_kind(planning::Decision decision);
 
 /// Translates plans into messages, and numbers their revisions and stops.
@@ -26,7 +26,7 @@ class PlanConversion {
   /// the stamp of the tracks.
   [[nodiscard]] furrow_msgs::msg::Plan to_msg(const planning::Plan& plan, const BaseOdometry& base,
                                               const builtin_interfaces::msg::Time& stamp);
-  /// `axis` is an index of the tool, -1: none.
+  /// `axis` is an index in the tool; -1: none.
   [[nodiscard]] furrow_msgs::msg::Decision to_msg(Time stamp, planning::TargetId id,
                                                   msgs::DecisionKind decision,
                                                   std::int32_t axis = -1) const;

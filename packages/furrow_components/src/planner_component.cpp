@@ -51,7 +51,9 @@ class PlannerComponent final : public graph::Component {
         out_(context.output<topics::Plan>()),
         heartbeat_out_(context.output<topics::PlannerHeartbeat>()) {
     context.input<topics::RobotOdometry>([this](const auto& message) {
-      if (!poses_.add(from_msg(*message)).ok()) context_.count("bad_odometry");
+      if (const Status added = poses_.add(from_msg(*message)); !added.ok()) {
+        context_.warn("bad_odometry", added.error().message + "; it was not used");
+      }
     });
     context.input<topics::AxisState>([this](const auto& state) { watch(*state); });
     context.input<topics::Tracks>([this](const auto& tracks) { plan(*tracks); });
@@ -126,7 +128,9 @@ class PlannerComponent final : public graph::Component {
     deleted_.clear();
     invalid_.clear();
     for (const Track& track : tracks.tracks()) {
-      if (!msgs::from_msg(track.state()).ok()) context_.count("unknown_values");
+      if (const auto state = msgs::from_msg(track.state()); !state.ok()) {
+        context_.warn("unknown_values", state.error().message + "; the track is not treated");
+      }
       conversion_.seen(track.id(), graph::from_msg(track.last_seen()));
       const planning::CropPhenotype crop{from_point(track.position()).head<2>(), track.area_mm2()};
       // An invalid crop would take the weight from every weed near it.
@@ -171,7 +175,7 @@ class PlannerComponent final : public graph::Component {
     const auto weight = harmfulness_.weigh(
         {.species = track.species(), .p_F = p_F, .area_mm2 = track.area_mm2()}, crops_);
     if (!weight.ok()) {
-      context_.count("bad_tracks");
+      context_.warn("bad_tracks", weight.error().message + "; the track is not treated");
       view_->remove(track.id());
       invalid_.push_back(track.id());
       return;
@@ -186,12 +190,14 @@ class PlannerComponent final : public graph::Component {
   }
 
   void count_if_bad(const Status& status) {
-    if (!status.ok()) context_.count("bad_tracks");
+    if (!status.ok()) context_.warn("bad_tracks", status.error().message + "; it was not used");
   }
 
   void watch(const furrow_msgs::msg::AxisState& state) {
     const auto cause = msgs::from_msg(state.cause());
-    if (!cause.ok()) context_.count("unknown_values");
+    if (!cause.ok()) {
+      context_.warn("unknown_values", cause.error().message + "; the axis is out of service");
+    }
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       if (axes_[i].model.name != state.axis()) continue;
       // An axis with an unknown cause is not in service either.

@@ -33,7 +33,7 @@ bool PoseBuffer::is_astray(Time stamp) {
 }
 
 Result<BaseOdometry> PoseBuffer::at(Time stamp, Duration ahead) const {
-  if (poses_.empty()) return Error{ErrorCode::kUnavailable, "no odometry yet"};
+  if (poses_.empty()) return Error{ErrorCode::kUnavailable, "no odometry was received"};
   const BaseOdometry& newest = poses_.back();
   if (stamp > newest.stamp) {
     if (stamp > newest.stamp + ahead) return Error{ErrorCode::kStale, "odometry is too old"};
@@ -45,7 +45,8 @@ Result<BaseOdometry> PoseBuffer::at(Time stamp, Duration ahead) const {
   }
   const auto after = std::ranges::lower_bound(poses_, stamp, {}, &BaseOdometry::stamp);
   if (after->stamp == stamp) return *after;
-  if (after == poses_.begin()) return Error{ErrorCode::kStale, "older than the odometry kept"};
+  if (after == poses_.begin())
+    return Error{ErrorCode::kStale, "the stamp is older than the stored odometry"};
   const BaseOdometry& b = *after;
   const BaseOdometry& a = *std::prev(after);
   const double fraction = (stamp - a.stamp).to_seconds() / (b.stamp - a.stamp).to_seconds();

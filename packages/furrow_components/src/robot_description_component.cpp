@@ -34,11 +34,11 @@ geometry_msgs::msg::TransformStamped camera_transform(const geometry::CameraMode
   return message;
 }
 
-/// What viewers of ROS 2 need to draw the robot, once and for whoever comes later.
+/// Publishes the latched topics with which ROS 2 viewers draw the robot.
 class RobotDescription final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Publishes the URDF and where the camera stands, for viewers.")
+    d.doc("Publishes the URDF and the pose of the camera, for viewers.")
         .parameters<ToolFileParameters>()
         .output<topics::RobotDescription>()
         .output<topics::StaticTransforms>();

@@ -43,44 +43,46 @@ struct Parameters {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
     v.visit({.name = "length_m",
              .unit = "m",
-             .description = "row driven over; a shorter field ends the run earlier",
+             .description = "length of the row; a shorter field ends the run earlier",
              .min = 0.5,
              .max = 10000.0},
             length_m);
     v.visit({.name = "run_in_m",
              .unit = "m",
-             .description = "start of the base before the field",
+             .description = "start of the base ahead of the field",
              .min = 0.0,
              .max = 100.0},
             run_in_m);
     v.visit({.name = "run_out_m",
              .unit = "m",
-             .description = "way of the base beyond the field",
+             .description = "distance of the base beyond the field",
              .min = 0.0,
              .max = 100.0},
             run_out_m);
-    v.visit({.name = "rate_hz", .unit = "Hz", .description = "odometry", .min = 1.0, .max = 1000.0},
+    v.visit({.name = "rate_hz",
+             .unit = "Hz",
+             .description = "rate of the odometry",
+             .min = 1.0,
+             .max = 1000.0},
             rate_hz);
     v.visit({.name = "imu_rate_hz",
              .unit = "Hz",
-             .description = "inertial measurements",
+             .description = "rate of the IMU",
              .min = 1.0,
              .max = 1000.0},
             imu_rate_hz);
     v.visit({.name = "gnss_rate_hz",
              .unit = "Hz",
-             .description = "positions of the antenna",
+             .description = "rate of the GNSS",
              .min = 0.1,
              .max = 100.0},
             gnss_rate_hz);
-    v.visit(
-        {.name = "follow_speed_requests",
-         .description = "whether the robot drives as slowly as the tool asks; never faster than "
-                        "its own speed"},
-        follow_speed_requests);
+    v.visit({.name = "follow_speed_requests",
+             .description = "follow robot/speed_request, never faster than speed_mps"},
+            follow_speed_requests);
     v.visit({.name = "speed_request_timeout_s",
              .unit = "s",
-             .description = "without a newer request the robot goes back to its own speed",
+             .description = "without a request for this long the robot returns to speed_mps",
              .min = 0.02,
              .max = 60.0},
             speed_request_timeout_s);
@@ -117,12 +119,11 @@ double squared(double value) {
   return value * value;
 }
 
-/// The simulated world but for its looks: drives the robot, measures its wheels, turning and
-/// position, and lets what the valves release fall to the ground.
+/// Simulates the motion of the robot, its wheel odometry, IMU and GNSS, and the landing of sprays.
 class RobotSimulator final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Simulated robot: true motion, wheel odometry, IMU, GNSS, and where sprays land.")
+    d.doc("Simulates the robot: true motion, wheel odometry, IMU, GNSS, landing of sprays.")
         .parameters<Parameters>()
         .input<topics::AxisEvent>(graph::Need::kOptional)
         .input<topics::AxisState>(graph::Need::kOptional)
@@ -170,13 +171,14 @@ class RobotSimulator final : public graph::Component {
     if (!parameters_.follow_speed_requests) return;
     const double speed_mps = request.twist().linear().x();
     if (!std::isfinite(speed_mps) || speed_mps < 0.0) {
-      context_.count("bad_speed_requests");
+      context_.warn("bad_speed_requests",
+                    "the requested speed is negative or not finite; it was ignored");
       return;
     }
     asked_ = {graph::from_msg(request.header().stamp()), speed_mps};
   }
 
-  // A tool that fell silent holds nobody up, nor does one whose clock is another.
+  // A tool that is silent, or whose clock differs, does not hold the robot up.
   void follow_request(Time now) {
     if (!parameters_.follow_speed_requests || !asked_) return;
     const Duration timeout = Duration::seconds(parameters_.speed_request_timeout_s);
@@ -186,7 +188,8 @@ class RobotSimulator final : public graph::Component {
     request_lost_ = !fresh;
     if (request_lost_) {
       context_.count("speed_requests_lost");
-      context_.health(graph::HealthLevel::kWarn, "no speed is asked for: back to the own one");
+      context_.health(graph::HealthLevel::kWarn,
+                      "no speed request received; the robot returns to its own speed");
     } else {
       context_.health(graph::HealthLevel::kOk, "");
     }
@@ -209,7 +212,7 @@ class RobotSimulator final : public graph::Component {
     reckon(reading, now);
     nav_msgs::msg::Odometry wheels =
         to_msg(BaseOdometry{now, reckoned_, reading.speed_mps, reading.yaw_rate_radps}, "odom");
-    // Of the 6x6 over (x, y, z, roll, pitch, yaw): what the wheels claim of speed and turning.
+    // In the 6x6 over (x, y, z, roll, pitch, yaw): the variances of speed and yaw rate.
     wheels.twist().covariance()[0] = squared(parameters_.wheel.speed_noise_mps);
     wheels.twist().covariance()[35] = squared(parameters_.wheel.yaw_rate_noise_radps);
     wheels_out_.publish(std::move(wheels));
@@ -245,7 +248,7 @@ class RobotSimulator final : public graph::Component {
     hand_out_positions(now);
   }
 
-  // The receiver needs its time; the stamp stays that of the antenna.
+  // The receiver publishes late, with the stamp of the measurement.
   void hand_out_positions(Time now) {
     while (!positions_.empty() && positions_.front().available <= now) {
       const simulation::GnssReading& reading = positions_.front();
@@ -258,7 +261,7 @@ class RobotSimulator final : public graph::Component {
     }
   }
 
-  // The pose that wheels alone would tell, in a frame that starts as the field frame.
+  // Dead reckoning by the wheels, from the true start in the field frame.
   void reckon(const simulation::WheelReading& reading, Time now) {
     reckoned_ = geometry::extrapolate(reckoned_, {reading.speed_mps, 0.0, reading.yaw_rate_radps},
                                       (now - last_).to_seconds());
@@ -298,7 +301,7 @@ class RobotSimulator final : public graph::Component {
   simulation::WheelOdometry wheel_;
   simulation::Imu imu_;
   simulation::Gnss gnss_;
-  std::deque<simulation::GnssReading> positions_;  ///< measured, not yet handed out
+  std::deque<simulation::GnssReading> positions_;  ///< measured, not published yet
   std::unique_ptr<simulation::RobotMotion> motion_;
   std::optional<SpeedRequest> asked_;
   bool request_lost_ = false;

@@ -93,21 +93,25 @@ class Scorer final : public graph::Component {
   /// Whether an enumeration holds one of its constants.
   template <class Enumeration>
   bool known(const Enumeration& message) {
-    if (msgs::from_msg(message).ok()) return true;
-    context_.count("unknown_values");
+    const auto value = msgs::from_msg(message);
+    if (value.ok()) return true;
+    context_.warn("unknown_values", value.error().message + "; it is not in the ledger");
     return false;
   }
 
   template <class T>
   bool bounded(const std::vector<T>& list) {
     if (list.size() < kMaxEntries) return true;
-    context_.count("entries_beyond_the_limit");
+    context_.warn("entries_beyond_the_limit",
+                  "more than 2000000 entries of one kind; further ones are not in the ledger");
     return false;
   }
 
   void drive(const BaseOdometry& base) {
     if (!first_) first_ = base;
-    if (!poses_.add(base).ok()) context_.count("bad_odometry");
+    if (const Status added = poses_.add(base); !added.ok()) {
+      context_.warn("bad_odometry", added.error().message + "; it was not used");
+    }
   }
 
   void move(const furrow_msgs::msg::AxisState& state) {

@@ -23,7 +23,9 @@ void SpeedRequests::consider(const planning::RobotState& robot, planning::Observ
       {robot.x_m, robot.speed_mps, view.committed_until_x_m(), std::ssize(view.plan().decisions)},
       [&view](const planning::SpeedProfile& speeds) { return view.left_at(speeds); });
   if (status.ok()) status = view.set_speeds(governor_->expected());
-  if (!status.ok()) context_.count("speed_not_considered");
+  if (!status.ok()) {
+    context_.warn("speed_not_considered", status.error().message + "; the requested speed is kept");
+  }
 }
 
 void SpeedRequests::publish(const BaseOdometry& base) {

@@ -12,16 +12,16 @@
 
 namespace furrow::components {
 
-/// What the planner asks of the robot's speed, as messages. Does nothing when it is not to govern.
+/// Publishes the planner's speed requests to the robot. Does nothing where `govern` is false.
 class SpeedRequests {
  public:
   SpeedRequests(graph::Context& context, bool govern,
                 const planning::SpeedGovernorParameters& parameters, double row_speed_mps,
                 std::span<const planning::AxisSpec> axes);
 
-  /// Decides by the weeds that the view has not committed yet, and has it plan for that.
+  /// Chooses the speed for the weeds that the view has not committed yet, and plans for it.
   void consider(const planning::RobotState& robot, planning::ObservationView& view);
-  /// Publishes what holds for a robot at this pose.
+  /// Publishes the request for a robot at this pose.
   void publish(const BaseOdometry& base);
 
  private:

@@ -39,7 +39,8 @@ void SprayLanding::take(const furrow_msgs::msg::AxisEvent& event) {
   if (event.event() != msgs::AxisEventKind::kSprayed) return;
   const auto axis = std::ranges::find(tool_.axes, event.axis(), &geometry::AxisModel::name);
   if (axis == tool_.axes.end()) {
-    context_.count("events_of_unknown_axes");
+    context_.warn("events_of_unknown_axes",
+                  "the tool has no axis '" + event.axis() + "'; its spray does not land");
     return;
   }
   Valve& valve = valves_.at(event.axis());
@@ -58,7 +59,8 @@ void SprayLanding::take(const furrow_msgs::msg::AxisEvent& event) {
   }
   constexpr std::size_t kMostAtOnce = 1000;
   if (falling_.size() == kMostAtOnce) {
-    context_.count("sprays_beyond_the_limit");
+    context_.warn("sprays_beyond_the_limit",
+                  "more than 1000 sprays are in the air; a spray does not land");
     return;
   }
   falling_.push_back({event, window->open, *window->close, &*axis});
@@ -104,7 +106,8 @@ void SprayLanding::land_slice(const geometry::AxisModel& model, const AxisPoint&
   const auto first = at(from);
   const auto last = at(to);
   if (!first || !last) return;
-  context_.count("uncommanded_sprays");
+  context_.warn("uncommanded_sprays",
+                "simulated fault: the valve of " + model.name + " releases without a command");
   furrow_msgs::msg::AxisEvent event;
   event.axis(model.name);
   const auto patch = simulation::spray_patch(*first, *last, model.nozzle.height_m, parameters_);
@@ -123,7 +126,8 @@ void SprayLanding::land(const Falling& spray) {
   const auto at_open = nozzle(*spray.axis, axis_at(first, last, spray.open));
   const auto at_close = nozzle(*spray.axis, axis_at(first, last, spray.close));
   if (!at_open || !at_close) {
-    context_.count("sprays_outside_the_memory");
+    context_.warn("sprays_outside_the_memory",
+                  "no true pose at the time of a spray; it does not land");
     return;
   }
   const geometry::NozzleModel& model = spray.axis->nozzle;

@@ -9,20 +9,19 @@
 
 namespace furrow::components {
 
-/// Follows the axis through each spray, from the command to open until the last drop leaves. That
-/// is a delay after each command, which the calibration tells: there the axis is measured for the
-/// spray's event.
+/// Measures the axis at the first and the last drop of each spray, for the spray's event. Drops
+/// leave a calibrated delay after the commands to open and close.
 class SprayLog {
  public:
   explicit SprayLog(Duration delay) : delay_(delay) {}
 
-  /// `event` as far as it is known; `opened` in it is the command's time.
+  /// Begins a spray. `opened` is the time of the command, and is set in `event`.
   void open(furrow_msgs::msg::AxisEvent event, Time opened);
-  /// The event of the valve that is open; null when it is shut.
+  /// The event of the open valve; null when the valve is shut.
   [[nodiscard]] furrow_msgs::msg::AxisEvent* opened();
   void close(Time closed);
-  /// Takes the axis' reading as of `now`. Gives a spray's event once it is complete, stamped when
-  /// the last drop leaves.
+  /// Takes the reading of the axis at `now`. Returns the event of a spray once it is complete, with
+  /// the stamp of the last drop.
   [[nodiscard]] std::optional<furrow_msgs::msg::AxisEvent> sample(
       Time now, const actuation::AxisReading& reading);
 

@@ -20,7 +20,7 @@ struct Parameters {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
     v.visit({.name = "rate_hz",
              .unit = "Hz",
-             .description = "of the true odometry",
+             .description = "rate of the true odometry",
              .min = 1.0,
              .max = 1000.0},
             rate_hz);
@@ -31,11 +31,11 @@ struct Parameters {
   }
 };
 
-/// Where sprays land beside a recorded motion; without a recorded truth it tells nothing.
+/// Simulates the landing of sprays over a recorded true motion; without one it publishes nothing.
 class SpraySimulator final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Simulated valves and drops over the true motion of a recording: where sprays land.")
+    d.doc("Simulates the landing of sprays over the true motion of a recording.")
         .parameters<Parameters>()
         .input<topics::TrueOdometry>(graph::Need::kOptional)
         .input<topics::AxisEvent>(graph::Need::kOptional)
@@ -48,7 +48,9 @@ class SpraySimulator final : public graph::Component {
         landing_(context, geometry::load_tool_model(parameters_.tool_file), parameters_.spray,
                  parameters_.valve_faults, Duration::seconds(2.0 / parameters_.rate_hz)) {
     context.input<topics::TrueOdometry>([this, &context](const auto& truth) {
-      if (!landing_.move(*truth)) context.count("bad_odometry");
+      if (!landing_.move(*truth)) {
+        context.warn("bad_odometry", "true odometry goes back in time; it was not used");
+      }
     });
     context.input<topics::AxisEvent>([this](const auto& event) { landing_.take(*event); });
     context.input<topics::AxisState>([this](const auto& state) { landing_.take(*state); });

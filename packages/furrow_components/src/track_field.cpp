@@ -33,29 +33,28 @@ std::vector<double> crop_rows(const field::FieldModel& field) {
 
 void TrackFieldParameters::visit(ParameterVisitor& v) {
   v.visit({.name = "field_model_file",
-           .description = "where the plants seen are saved as a field at the end of the run, .csv "
-                          "or .geojson; empty: nowhere"},
+           .description = "file to which the confirmed tracks are saved as a field at the end of "
+                          "the run, .csv or .geojson; empty: none"},
           field_model_file);
   v.visit({.name = "length_m",
            .unit = "m",
-           .description = "row driven over: what stands there is saved",
+           .description = "length of the row of which tracks are saved",
            .min = 0.1,
            .max = 10000.0},
           length_m);
   v.visit({.name = "field_model_crop_species",
-           .description = "species written for a crop that the detector gave none"},
+           .description = "species of a crop for which the detector has none"},
           field_model_crop_species);
   v.visit({.name = "field_model_weed_species",
-           .description = "species written for a weed that the detector gave none"},
+           .description = "species of a weed for which the detector has none"},
           field_model_weed_species);
 }
 
 field::FieldModel field_of_tracks(std::span<const tracking::Track> tracks,
                                   std::span<const std::string> species,
                                   const TrackFieldParameters& parameters) {
-  field::FieldModel field{.name = "tracked",
-                          .source = "tracked: confirmed tracks of a run",
-                          .length_m = parameters.length_m};
+  field::FieldModel field{
+      .name = "tracked", .source = "confirmed tracks of a run", .length_m = parameters.length_m};
   for (const tracking::Track& track : tracks) {
     const Eigen::Vector2d& p_F = track.p_F_m;
     if (!track.confirmed || p_F.x() < 0.0 || p_F.x() > field.length_m) continue;

@@ -34,12 +34,12 @@ struct Parameters {
     v.visit({.name = "tool_file", .description = "URDF of robot and tool"}, tool_file);
     v.visit({.name = "max_wait_s",
              .unit = "s",
-             .description = "an image that has no pose for so long is given up",
+             .description = "images without a pose for this long are dropped",
              .min = 0.01,
              .max = 10.0},
             max_wait_s);
     v.visit({.name = "max_empty_views",
-             .description = "images in a row without a plant from which on the health is degraded",
+             .description = "images in a row without a plant after which the health is a warning",
              .min = 1,
              .max = 1e6},
             max_empty_views);
@@ -54,13 +54,12 @@ const geometry::CameraModel& first_camera(const geometry::ToolModel& tool) {
   return tool.cameras.front();
 }
 
-/// Keeps the plants of the images in the field frame. What it publishes bears the stamp of the
-/// newest view that could be used: after one that could not, those who act on the tracks are told
-/// how old they are.
+/// Tracks the plants of the images in the field frame. Tracks have the stamp of the newest image
+/// that was used. After an image that was not, their age is visible to planner and drivers.
 class TrackerComponent final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Plants over many images: positions refined, class fused, confirmed or dropped.")
+    d.doc("Tracks plants over images: refines positions, fuses classes, confirms or deletes.")
         .parameters<Parameters>()
         .input<topics::RobotOdometry>()
         .input<topics::Instances>()
@@ -84,17 +83,17 @@ class TrackerComponent final : public graph::Component {
                               odometry.yaw_rate_radps);
       } else {
         context_.count("bad_odometry");
-        warn("odometry that is not finite or goes back in time");
+        warn("odometry is not finite or goes back in time; it was not used");
       }
-      work_off();
+      use_waiting();
     });
     context.input<topics::Instances>([this](const auto& message) {
       waiting_.push_back(message);
-      if (waiting_.size() > kMaxWaiting) give_up_oldest("images wait for odometry");
-      work_off();
+      if (waiting_.size() > kMaxWaiting) drop_oldest("no odometry at the stamp of an image");
+      use_waiting();
     });
     context.every(Duration::seconds(0.5 * parameters_.max_wait_s),
-                  [this](Time now) { give_up_waiting(now); });
+                  [this](Time now) { drop_overdue(now); });
     context.input<topics::RunStatus>([this](const auto& status) {
       if (status->finished() && !parameters_.field.field_model_file.empty()) save_field();
     });
@@ -103,22 +102,22 @@ class TrackerComponent final : public graph::Component {
  private:
   static constexpr std::size_t kMaxWaiting = 8;
   static constexpr std::size_t kMaxCovariances = 512;
-  static constexpr std::size_t kMaxEnded = 1'000'000;
+  static constexpr std::size_t kMaxDeleted = 1'000'000;
 
   void warn(const std::string& what) { context_.health(graph::HealthLevel::kWarn, what); }
 
-  void give_up_oldest(const std::string& why) {
+  void drop_oldest(const std::string& why) {
     waiting_.pop_front();
     context_.count("images_without_pose");
-    warn(why);
+    warn(why + "; the image was not used");
     publish();
   }
 
-  void give_up_waiting(Time now) {
+  void drop_overdue(Time now) {
     const Duration longest = Duration::seconds(parameters_.max_wait_s);
     while (!waiting_.empty() &&
            now - graph::from_msg(waiting_.front()->header().stamp()) > longest) {
-      give_up_oldest("images wait for odometry");
+      drop_oldest("no odometry at the stamp of an image");
     }
   }
 
@@ -128,22 +127,22 @@ class TrackerComponent final : public graph::Component {
     if (covariances_.size() > kMaxCovariances) covariances_.pop_front();
   }
 
-  // That of the newest pose not after the stamp.
+  // The covariance of the newest pose not after the stamp.
   [[nodiscard]] Eigen::Matrix3d covariance_at(Time stamp) const {
     const auto after = std::ranges::upper_bound(covariances_, stamp, {},
                                                 [](const auto& entry) { return entry.first; });
     return after == covariances_.begin() ? covariances_.front().second : std::prev(after)->second;
   }
 
-  // An image waits until the pose at its stamp is known.
-  void work_off() {
+  // An image waits for odometry that is newer than its stamp.
+  void use_waiting() {
     while (!waiting_.empty() && !poses_.empty()) {
       const Time stamp = graph::from_msg(waiting_.front()->header().stamp());
       if (stamp > poses_.newest().stamp) return;
       const auto message = waiting_.front();
       const auto pose = poses_.at(stamp);
       if (!pose.ok()) {
-        give_up_oldest(pose.error().message);
+        drop_oldest(pose.error().message);
         continue;
       }
       waiting_.pop_front();
@@ -166,7 +165,7 @@ class TrackerComponent final : public graph::Component {
         if (!instance.species().empty()) vote(instance.species(), *seen);
         observations.push_back(std::move(seen).value());
       } else {
-        context_.count("bad_instances");
+        context_.warn("bad_instances", seen.error().message + "; the plant was not tracked");
       }
     }
     const tracking::UpdateSummary summary = tracker_.update(view, observations);
@@ -181,34 +180,35 @@ class TrackerComponent final : public graph::Component {
       if (summary.empty_view) context_.count("empty_views");
     }
     report(summary);
-    if (!parameters_.field.field_model_file.empty()) keep_ended();
+    if (!parameters_.field.field_model_file.empty()) keep_deleted();
     publish();
   }
 
   void report(const tracking::UpdateSummary& summary) {
     if (!summary.ok()) {
       context_.count("bad_views");
-      warn("a view or an observation was not valid");
+      warn("an image or a plant of it was invalid; it was not used");
     } else if (empty_views_ >= parameters_.max_empty_views) {
-      warn("no plant in " + std::to_string(empty_views_) + " images");
+      warn("no plant in " + std::to_string(empty_views_) + " images in a row; nothing is tracked");
     } else {
       context_.health(graph::HealthLevel::kOk, "");
     }
   }
 
-  void keep_ended() {
+  void keep_deleted() {
     for (const tracking::Track& track : tracker_.ended()) {
       if (!track.confirmed || track.end_reason == tracking::EndReason::kMerged) continue;
-      if (ended_.size() < kMaxEnded) ended_.push_back(track);
+      if (deleted_.size() < kMaxDeleted) deleted_.push_back(track);
     }
   }
 
   void save_field() {
-    std::vector<tracking::Track> all = ended_;
+    std::vector<tracking::Track> all = deleted_;
     all.insert(all.end(), tracker_.tracks().begin(), tracker_.tracks().end());
     const field::FieldModel field = field_of_tracks(all, species_names_, parameters_.field);
     if (const Status saved = write_field(field, parameters_.field.field_model_file); !saved.ok()) {
-      context_.health(graph::HealthLevel::kError, saved.error().message);
+      context_.health(graph::HealthLevel::kError,
+                      saved.error().message + "; the field was not saved");
       context_.count("fields_not_saved");
     }
   }
@@ -217,7 +217,8 @@ class TrackerComponent final : public graph::Component {
     auto name = std::ranges::find(species_names_, species);
     if (name == species_names_.end()) {
       if (species_names_.size() == kMaxSpecies) {
-        context_.count("species_beyond_the_limit");
+        context_.warn("species_beyond_the_limit",
+                      "more than 32 species; '" + species + "' is not used");
         return;
       }
       name = species_names_.insert(species_names_.end(), species);
@@ -255,7 +256,7 @@ class TrackerComponent final : public graph::Component {
   std::int64_t empty_views_ = 0;     ///< in a row
   std::deque<std::shared_ptr<const furrow_msgs::msg::PlantInstances>> waiting_;
   std::deque<std::pair<Time, Eigen::Matrix3d>> covariances_;
-  std::vector<tracking::Track> ended_;  ///< for the field model, when one is asked for
+  std::vector<tracking::Track> deleted_;  ///< for the field model; empty where none is saved
   std::vector<std::string> species_names_;
 };
 

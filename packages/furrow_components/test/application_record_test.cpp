@@ -47,8 +47,8 @@ furrow_msgs::msg::RunRecord record() {
                  event(AxisEventKind::kSprayed, 2.0, -0.4), event(AxisEventKind::kDryRun, 3, 0),
                  event(AxisEventKind::kStale, 4.0, 0.0),
                  event(AxisEventKind::kSprayed, 5.0, -0.1)});
-  auto& stranger = record.events().emplace_back(event(AxisEventKind::kSprayed, 6.0, 0.0));
-  stranger.axis("somebody");
+  auto& other = record.events().emplace_back(event(AxisEventKind::kSprayed, 6.0, 0.0));
+  other.axis("other_axis");
   auto& safe = record.events().emplace_back(event(AxisEventKind::kSafeState, 0.0, 0.0));
   safe.cause(msgs::to_msg(msgs::SafetyCause::kPlanStale));
   auto& state = record.axes().emplace_back();
@@ -63,7 +63,7 @@ furrow_msgs::msg::RunRecord record() {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-TEST(ApplicationRecord, TakesTheSpraysThatTheDriversMade) {
+TEST(ApplicationRecord, ListsTheSpraysOfTheDrivers) {
   const auto sprays = applications_of(record(), tool());
   ASSERT_EQ(sprays.size(), 3u);
   EXPECT_EQ(sprays[1].p_F, Eigen::Vector2d(2.0, -0.4));
@@ -71,24 +71,24 @@ TEST(ApplicationRecord, TakesTheSpraysThatTheDriversMade) {
   EXPECT_EQ(sprays[1].radius_m, 0.025);
 }
 
-TEST(ApplicationRecord, TellsUseByNozzleRowAndArea) {
+TEST(ApplicationRecord, ReportsUseByNozzleRowAndArea) {
   const auto tables = use_tables(record(), applications_of(record(), tool()), tool());
   ASSERT_EQ(tables.size(), 4u);
   EXPECT_EQ(tables[0].rows, (Rows{{"axis_1", "3", "0.06 s", "0.3 ml", "safe: plan_stale"}}));
   EXPECT_EQ(tables[1].rows,
             (Rows{{"-0.25 m", "2", "0.2 ml", "0.02 ml"}, {"0.25 m", "1", "0.1 ml", "0.01 ml"}}));
-  // 10 m of field by the axis' reach and a footprint on either side.
+  // 10 m of field times the reach of the axis with a footprint on either side.
   EXPECT_EQ(tables[2].rows[0], (std::vector<std::string>{"covered", "10.50 m2"}));
   // Three footprints of 19.6 cm2.
   EXPECT_EQ(tables[2].rows[1], (std::vector<std::string>{"sprayed", "0.006 m2"}));
   EXPECT_EQ(tables[3].rows, (Rows{{"10.020 s", "axis_1", "plan_stale", "20.00 ms"}}));
 }
 
-TEST(ApplicationRecord, AnEmptyRunHasNothingToTellButItsArea) {
+TEST(ApplicationRecord, EmptyRunReportsItsAreaOnly) {
   const furrow_msgs::msg::RunRecord empty;
   const auto tables = use_tables(empty, {}, tool());
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(tables[0].rows.size(), 2u);  // no share of nothing
+  EXPECT_EQ(tables[0].rows.size(), 2u);  // no shares
 }
 
 TEST(ApplicationRecord, WritesTheMapOnlyWithAnOrigin) {

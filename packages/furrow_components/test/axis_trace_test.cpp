@@ -5,7 +5,7 @@
 namespace furrow::components {
 namespace {
 
-TEST(AxisTrace, FollowsACubicBetweenTheMeasurementsAndGoesStraightOnOutside) {
+TEST(AxisTrace, IsCubicBetweenTheMeasurementsAndLinearOutside) {
   const auto position = [](double t) { return 0.1 + 0.5 * t - 3.0 * t * t + 20.0 * t * t * t; };
   const auto velocity = [](double t) { return 0.5 - 6.0 * t + 60.0 * t * t; };
   const auto measured = [&](double t) {
@@ -24,7 +24,7 @@ TEST(AxisTrace, FollowsACubicBetweenTheMeasurementsAndGoesStraightOnOutside) {
               position(1.02) + 0.03 * velocity(1.02), 1e-9);
 }
 
-TEST(AxisTrace, TwoMeasurementsAtOnceAreOne) {
+TEST(AxisTrace, TwoMeasurementsOfOneTimeAreOne) {
   const AxisPoint point{Time::from_seconds(2.0), 0.3, 0.1};
   EXPECT_EQ(axis_at(point, point, point.time).position_m, 0.3);
   EXPECT_NEAR(axis_at(point, point, Time::from_seconds(2.1)).position_m, 0.31, 1e-12);

@@ -1,4 +1,4 @@
-// The truth that goes with a rendered image: what the image shows of each plant.
+// The ground truth of a rendered image: the visible part of each plant.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ namespace topics = msgs::topics;
 
 constexpr std::uint64_t kSeed = 4;
 
-/// A beet, a weed that stands alone, one at the beet's edge, and a seedling below the beet.
+/// A beet, an isolated weed, one at the edge of the beet, and a seedling below the beet.
 field::FieldModel small_field() {
   field::FieldModel field{.name = "test", .source = "test", .length_m = 3.0, .width_m = 1.2};
   const auto add = [&](field::PlantKind kind, const char* species, double x_m, double y_m,
@@ -47,7 +47,7 @@ field::FieldModel small_field() {
   return field;
 }
 
-/// Stands still and keeps the first truth.
+/// Stands still and keeps the first ground truth.
 class Feeder final : public graph::Component {
  public:
   Feeder(graph::Context& context, std::optional<furrow_msgs::msg::PlantInstances>& truth)
@@ -88,7 +88,7 @@ std::optional<furrow_msgs::msg::PlantInstances> truth_of(const std::filesystem::
   return truth;
 }
 
-TEST(CameraSimulator, TrueMasksAreWhatTheImageShows) {
+TEST(CameraSimulator, TrueMasksAreTheVisiblePartsOfPlants) {
   const field::FieldModel field = small_field();
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "camera_simulator_component_test.csv";
@@ -101,7 +101,7 @@ TEST(CameraSimulator, TrueMasksAreWhatTheImageShows) {
 
   const auto truth = truth_of(file, true);
   ASSERT_TRUE(truth);
-  // In the field's order; all stems are in the image.
+  // In the order of the field; all stems are in the image.
   ASSERT_EQ(truth->instances().size(), field.plants.size());
   std::size_t shown = 0;
   for (std::size_t i = 0; i < field.plants.size(); ++i) {

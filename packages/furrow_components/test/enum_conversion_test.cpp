@@ -1,4 +1,4 @@
-// Every value of an algorithm's enumeration has its own constant on the wire.
+// Every value of an algorithm's enumeration has its own constant in the message.
 
 #include <gtest/gtest.h>
 

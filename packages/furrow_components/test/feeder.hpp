@@ -6,8 +6,9 @@
 
 namespace furrow::components {
 
-/// A test's own component "feeder", which gives the components under test what they read and takes
-/// what they say: constructed from its context and from `world`, which outlives the run.
+/// The class of a test's own component "feeder", which publishes the input of the components under
+/// test and takes their output. It is constructed from its context and from `world`, which outlives
+/// the run.
 template <class Feeder, class... World>
 [[nodiscard]] graph::ComponentClass feeder_class(World&... world) {
   graph::ComponentClass type{.name = "feeder"};

@@ -46,7 +46,7 @@ std::array<float, 3> rgb(const visualization_msgs::msg::Marker& marker) {
   return {marker.color().r(), marker.color().g(), marker.color().b()};
 }
 
-TEST(FieldMarkers, APlantIsADiscWhereItStands) {
+TEST(FieldMarkers, PlantIsADiscAtItsPosition) {
   FieldMarkers markers(two_axes());
   const MarkerArray array = markers.plants(tracks({track(7, 0.9)}));
   ASSERT_EQ(array.markers().size(), 1U);
@@ -63,7 +63,7 @@ TEST(FieldMarkers, APlantIsADiscWhereItStands) {
   EXPECT_DOUBLE_EQ(disc.pose().orientation().w(), 1.0);
 }
 
-TEST(FieldMarkers, CropTreatedAndSparedWeedsAreToldApart) {
+TEST(FieldMarkers, CropTreatedAndLeftWeedsHaveDifferentColours) {
   FieldMarkers markers(two_axes());
   furrow_msgs::msg::Plan plan;
   for (const auto& [id, what] :
@@ -93,7 +93,7 @@ TEST(FieldMarkers, CropBeginsAtTheThreshold) {
   EXPECT_NE(rgb(array.markers()[0]), rgb(array.markers()[2]));
 }
 
-TEST(FieldMarkers, WhatIsGoneIsDeletedOnce) {
+TEST(FieldMarkers, MarkerOfADeletedTrackIsDeletedOnce) {
   FieldMarkers markers(two_axes());
   (void)markers.plants(tracks({track(1, 0.0), track(2, 0.0)}));
   Track ended = track(1, 0.0);
@@ -105,7 +105,7 @@ TEST(FieldMarkers, WhatIsGoneIsDeletedOnce) {
   EXPECT_EQ(markers.plants(tracks({track(2, 0.0)})).markers().size(), 1U);
 }
 
-TEST(FieldMarkers, ARouteIsALineThroughItsAims) {
+TEST(FieldMarkers, RouteIsALineThroughItsAims) {
   FieldMarkers markers(two_axes());
   furrow_msgs::msg::AxisRoute route;
   route.axis("rear");

@@ -43,7 +43,7 @@ TEST_F(LandingOffsetsFile, IsReadByAxisInMeters) {
   EXPECT_TRUE(load(kHeader).empty());
 }
 
-TEST_F(LandingOffsetsFile, RefusesWhatIsNoSuchFileAndSaysWhere) {
+TEST_F(LandingOffsetsFile, MalformedFileIsAnErrorWithItsLine) {
   expect_refused("", "axis,speed_mps");
   expect_refused("axis;speed_mps\n", ":1:");
   expect_refused(kHeader + std::string("axis_1,0.5,10\n"), "across_mm");

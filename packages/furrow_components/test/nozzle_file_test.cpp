@@ -40,7 +40,7 @@ TEST_F(NozzleFile, ReadsWhatItWrites) {
   EXPECT_EQ(load_nozzle(path, "right").flow_mlps, actuation::NozzleCalibration{}.flow_mlps);
 }
 
-TEST_F(NozzleFile, SaysWhatIsWrong) {
+TEST_F(NozzleFile, ErrorsNameTheCause) {
   EXPECT_NE(error("nozzles:\n  - axis: left\n", "right").find("no entry for the axis 'right'"),
             std::string::npos);
   EXPECT_NE(error("nozzles:\n  - axis: a\n  - axis: a\n", "a").find("twice"), std::string::npos);

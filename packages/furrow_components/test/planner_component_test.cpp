@@ -1,5 +1,5 @@
-// The planner as a component, in simulated time: routes from tracks, a reason for what is left, and
-// what becomes of an axis's targets when it fails in the middle of the row.
+// The planner as a component, in simulated time: routes, reasons for weeds that are left, and
+// reassignment of targets when an axis fails in the row.
 
 #include <gtest/gtest.h>
 
@@ -33,18 +33,18 @@ constexpr double kSpeed_mps = 0.5;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<std::string> kAxes = {"axis_1", "axis_2", "axis_3", "axis_4"};
 
-/// What the planner is given, and what it said.
+/// The inputs of the planner over time, and its output.
 struct World {
   double seconds = 1.0;
-  bool follow = false;        ///< the robot does as it is asked
-  std::vector<Track> tracks;  ///< shown while they are within sight
+  bool follow = false;        ///< the robot follows the speed requests
+  std::vector<Track> tracks;  ///< published while they are in view
   std::function<bool(const std::string&, double)> faulty = [](const auto&, double) {
     return false;
   };
   std::vector<Plan> plans;
   std::vector<geometry_msgs::msg::TwistStamped> speed_requests;
 
-  /// The last that was decided of each track.
+  /// The last decision about each track.
   [[nodiscard]] std::map<std::int64_t, furrow_msgs::msg::Decision> decisions() const {
     std::map<std::int64_t, furrow_msgs::msg::Decision> last;
     for (const Plan& plan : plans) {
@@ -158,7 +158,7 @@ std::set<std::int64_t> targets_of(const Plan& plan, const std::string& axis) {
   return ids;
 }
 
-TEST(PlannerComponent, AnAxisThatFailsInTheRowHandsItsTargetsOn) {
+TEST(PlannerComponent, TargetsOfAFailedAxisAreReassigned) {
   constexpr double kFault_s = 4.05;
   World world;
   world.seconds = 10.0;
@@ -174,7 +174,7 @@ TEST(PlannerComponent, AnAxisThatFailsInTheRowHandsItsTargetsOn) {
   for (const Plan& plan : world.plans) {
     const double at_s = graph::from_msg(plan.header().stamp()).to_seconds();
     if (at_s < kFault_s) before = &plan;
-    // The fault is told with the frame that follows it, the plan is of that frame or the next.
+    // The fault arrives with the next frame; the plan is of that frame or the one after.
     if (at_s < kFault_s + 0.15) continue;
     EXPECT_TRUE(targets_of(plan, "axis_2").empty()) << "at " << at_s << " s";
     if (after == nullptr) after = &plan;
@@ -183,24 +183,23 @@ TEST(PlannerComponent, AnAxisThatFailsInTheRowHandsItsTargetsOn) {
   ASSERT_NE(after, nullptr);
   const auto left = targets_of(*before, "axis_2");
   ASSERT_FALSE(left.empty());
-  std::set<std::int64_t> taken_over;
-  for (const char* axis : {"axis_1", "axis_3", "axis_4"})
-    taken_over.merge(targets_of(*after, axis));
-  std::size_t handed_on = 0;
-  for (const std::int64_t id : left) handed_on += taken_over.count(id);
-  EXPECT_GE(handed_on + 1, left.size()) << "but for one that was being approached";
+  std::set<std::int64_t> by_others;
+  for (const char* axis : {"axis_1", "axis_3", "axis_4"}) by_others.merge(targets_of(*after, axis));
+  std::size_t reassigned = 0;
+  for (const std::int64_t id : left) reassigned += by_others.count(id);
+  EXPECT_GE(reassigned + 1, left.size()) << "except one that was committed";
   const auto decisions = world.decisions();
   for (const Track& track : world.tracks) {
     ASSERT_TRUE(decisions.contains(track.id()));
     const auto& decision = decisions.at(track.id());
-    // Nozzle 2 stands at +0.06 m; what lies a metre ahead of it at the fault is the others'.
+    // Nozzle 2 is at x +0.06 m: targets ahead of it at the fault go to other axes.
     if (track.position().x() < kSpeed_mps * kFault_s + 0.3) continue;
     EXPECT_TRUE(decision.decision() == DecisionKind::kTreat) << track.id();
     EXPECT_NE(decision.axis(), "axis_2") << track.id();
   }
 }
 
-TEST(PlannerComponent, WithAllAxesFailedEachTargetIsLeftForThatFault) {
+TEST(PlannerComponent, WithAllAxesFailedEveryTargetIsLeftForAFault) {
   World world;
   world.seconds = 3.0;
   world.tracks = {weed(1, 0.8, 0.0), weed(2, 1.0, 0.3)};
@@ -212,7 +211,7 @@ TEST(PlannerComponent, WithAllAxesFailedEachTargetIsLeftForThatFault) {
   EXPECT_TRUE(decisions.at(2).decision() == DecisionKind::kFault);
 }
 
-TEST(PlannerComponent, SaysWhyEachWeedIsLeft) {
+TEST(PlannerComponent, EveryWeedThatIsLeftHasAReason) {
   World world;
   world.seconds = 1.0;
   world.tracks = {weed(1, 0.9, 0.0),  weed(2, 0.9, 1.2),
@@ -227,7 +226,7 @@ TEST(PlannerComponent, SaysWhyEachWeedIsLeft) {
   EXPECT_EQ(found, expected);
 }
 
-TEST(PlannerComponent, TracksThatCannotBeUsedHarmNoOther) {
+TEST(PlannerComponent, InvalidTracksDoNotAffectOthers) {
   World world;
   world.tracks = {weed(1, 0.9, 0.0), weed(2, kNan, 0.0), weed(3, 1.0, 0.3), crop(4, 0.95, kNan),
                   weed(1, 0.9, 0.0)};
@@ -261,7 +260,7 @@ TEST(PlannerComponent, CountsUnknownValuesAndTreatsNoWeedOfAnUnknownState) {
   EXPECT_GE(health.counters.at("unknown_values"), 2);
 }
 
-TEST(PlannerComponent, TreatsWeedsThatAreNotConfirmedWhereThatIsAskedFor) {
+TEST(PlannerComponent, TreatsUnconfirmedWeedsOnRequest) {
   for (const bool asked : {false, true}) {
     World world;
     world.tracks = {weed(1, 0.9, 0.0), weed(2, 1.0, 0.3)};
@@ -276,14 +275,14 @@ TEST(PlannerComponent, TreatsWeedsThatAreNotConfirmedWhereThatIsAskedFor) {
   }
 }
 
-/// Weeds in a line across the row, more than four axes can reach at once at any but a low speed.
+/// Weeds in a line across the row: four axes reach them all at a low speed only.
 std::vector<Track> line_across(double x_m) {
   std::vector<Track> weeds;
   for (int i = 0; i < 11; ++i) weeds.push_back(weed(i + 1, x_m + 0.003 * i, 0.12 * (i - 5)));
   return weeds;
 }
 
-TEST(PlannerComponent, AsksForTheRobotsSpeedOnlyWhereItIsToGovern) {
+TEST(PlannerComponent, RequestsNoSpeedUnlessItGoverns) {
   World world;
   world.seconds = 3.0;
   world.tracks = line_across(3.0);
@@ -291,7 +290,7 @@ TEST(PlannerComponent, AsksForTheRobotsSpeedOnlyWhereItIsToGovern) {
   EXPECT_TRUE(world.speed_requests.empty());
 }
 
-TEST(PlannerComponent, AsksTheRobotToSlowForWhatTheAxesWouldNotReach) {
+TEST(PlannerComponent, RequestsALowerSpeedForWeedsThatTheAxesWouldNotReach) {
   const std::map<std::string, ParameterValue> parameters = {
       {"govern_speed", true},
       {"kinematics", std::string("trapezoid")},
@@ -322,7 +321,7 @@ TEST(PlannerComponent, AsksTheRobotToSlowForWhatTheAxesWouldNotReach) {
     EXPECT_TRUE(decision.decision() == DecisionKind::kTreat) << id;
   }
 
-  // One that does as it likes is asked all the same, but not relied upon.
+  // A robot that ignores the requests still gets them; the plan uses its real speed.
   world.follow = false;
   world.plans.clear();
   run(world, parameters);
@@ -339,7 +338,7 @@ TEST(PlannerComponent, DoesNotGovernWithTheSegmentViewOrSpraysInPassing) {
   EXPECT_THROW(run(world, {{"govern_speed", true}, {"fire_while_moving", true}}), ConfigError);
 }
 
-TEST(PlannerComponent, NothingInSightIsAnEmptyPlan) {
+TEST(PlannerComponent, NoTracksGiveAnEmptyPlan) {
   World world;
   run(world);
   ASSERT_FALSE(world.plans.empty());

@@ -1,5 +1,4 @@
-/// Area and growth stage of rendered plants, measured from a frame, against what the renderer
-/// knows.
+/// Area and growth stage of rendered plants, measured from an image, against the ground truth.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +22,8 @@ struct Measured {
   double ground_m = 0.0;
 };
 
-/// A strip of plants of several species and sizes, looked at one after the other by a camera that
-/// hangs low over ground of the deepest waves that the renderer draws.
+/// Plants of several species and sizes in a row, each seen by a low camera over the most
+/// uneven ground of the renderer.
 class PlantsOnUnevenGround : public testing::Test {
  protected:
   static constexpr double kHeight_m = 0.6;
@@ -89,12 +88,12 @@ class PlantsOnUnevenGround : public testing::Test {
   std::vector<Measured> measured_;
 };
 
-TEST_F(PlantsOnUnevenGround, AreaByDepthIsThePlants) {
+TEST_F(PlantsOnUnevenGround, AreaMeasuredWithDepthIsThatOfThePlant) {
   std::vector<double> by_depth, level;
   const auto [low, high] =
       std::minmax_element(measured_.begin(), measured_.end(),
                           [](const auto& a, const auto& b) { return a.ground_m < b.ground_m; });
-  // The ground must differ, or the test says nothing: 3 cm of 60 are 10 % of an area.
+  // The height must vary for the test to be meaningful: 3 cm of 60 cm are 10 % of an area.
   ASSERT_GT(high->ground_m - low->ground_m, 0.03);
   for (const Measured& plant : measured_) {
     by_depth.push_back(std::abs(plant.by_depth_mm2 / plant.truth_mm2 - 1.0));
@@ -106,7 +105,7 @@ TEST_F(PlantsOnUnevenGround, AreaByDepthIsThePlants) {
             2.0 * *std::max_element(by_depth.begin(), by_depth.end()));
 }
 
-TEST_F(PlantsOnUnevenGround, GrowthStageIsThatOfTheTrueArea) {
+TEST_F(PlantsOnUnevenGround, GrowthStageFollowsTheTrueArea) {
   const GrowthStageEstimator estimator({});
   for (const Measured& plant : measured_) {
     EXPECT_EQ(estimator.stage(plant.by_depth_mm2), estimator.stage(plant.truth_mm2))

@@ -1,4 +1,4 @@
-// The simulated robot and the speed that it is asked for, in simulated time.
+// The simulated robot and speed requests, in simulated time.
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ namespace topics = msgs::topics;
 
 constexpr double kOwn_mps = 0.5;
 
-/// What the robot is asked, by the time, and how it drove.
+/// The requested speed over time, and the motion of the robot.
 struct World {
   double seconds = 6.0;
   std::function<std::optional<double>(double)> ask = [](double) { return std::nullopt; };
-  Duration stamp_offset;  ///< of the requests' stamps from the time at which they are sent
+  Duration stamp_offset;  ///< from the time of publication to the stamp of a request
   std::vector<BaseOdometry> drive;
 
   [[nodiscard]] double speed_at(double t_s) const {
@@ -82,7 +82,7 @@ void run(World& world, bool follow) {
   EXPECT_EQ(runtime.run().reason, "finished");
 }
 
-TEST(RobotSimulator, DrivesAsSlowlyAsItIsAsked) {
+TEST(RobotSimulator, FollowsALowerSpeedRequest) {
   World world;
   world.ask = [](double t_s) { return t_s < 1.0 ? kOwn_mps : 0.3; };
   run(world, true);
@@ -91,7 +91,7 @@ TEST(RobotSimulator, DrivesAsSlowlyAsItIsAsked) {
   EXPECT_NEAR(world.speed_at(2.0), 0.3, 1e-9);
 }
 
-TEST(RobotSimulator, GoesBackToItsOwnSpeedWhenNothingIsAskedAnyMore) {
+TEST(RobotSimulator, ReturnsToItsOwnSpeedWithoutRequests) {
   World world;
   world.ask = [](double t_s) { return t_s < 2.0 ? std::optional(0.2) : std::nullopt; };
   run(world, true);
@@ -100,7 +100,7 @@ TEST(RobotSimulator, GoesBackToItsOwnSpeedWhenNothingIsAskedAnyMore) {
   EXPECT_NEAR(world.speed_at(3.5), kOwn_mps, 1e-9);
 }
 
-TEST(RobotSimulator, FollowsAgainWhenTheRequestsComeBack) {
+TEST(RobotSimulator, FollowsRequestsThatResume) {
   World world;
   world.ask = [](double t_s) { return t_s < 1.0 || t_s > 3.0 ? std::optional(0.2) : std::nullopt; };
   run(world, true);
@@ -108,7 +108,7 @@ TEST(RobotSimulator, FollowsAgainWhenTheRequestsComeBack) {
   EXPECT_NEAR(world.speed_at(4.5), 0.2, 1e-9);
 }
 
-TEST(RobotSimulator, TakesNoRequestThatIsStaleOrOfAnotherClock) {
+TEST(RobotSimulator, IgnoresRequestsThatAreStaleOrOfAnotherClock) {
   for (const double offset_s : {-0.5, 0.5}) {
     World world;
     world.ask = [](double) { return 0.2; };
@@ -118,7 +118,7 @@ TEST(RobotSimulator, TakesNoRequestThatIsStaleOrOfAnotherClock) {
   }
 }
 
-TEST(RobotSimulator, IsNeverMadeFasterThanItsOwnSpeedNorDrivenByNonsense) {
+TEST(RobotSimulator, IgnoresRequestsAboveItsOwnSpeedOrInvalid) {
   for (const double asked_mps : {0.9, -0.2, std::numeric_limits<double>::quiet_NaN(),
                                  std::numeric_limits<double>::infinity()}) {
     World world;
@@ -128,7 +128,7 @@ TEST(RobotSimulator, IsNeverMadeFasterThanItsOwnSpeedNorDrivenByNonsense) {
   }
 }
 
-TEST(RobotSimulator, ThatIsNotToFollowDrivesAsIfNothingWereAsked) {
+TEST(RobotSimulator, IgnoresRequestsWhereFollowingIsOff) {
   World asked;
   asked.ask = [](double) { return 0.2; };
   World alone;

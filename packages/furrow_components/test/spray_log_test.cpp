@@ -23,7 +23,7 @@ actuation::AxisReading reading_at(Time now) {
   return reading;
 }
 
-TEST(SprayLog, MeasuresTheAxisWhenTheDropsLeave) {
+TEST(SprayLog, MeasuresTheAxisAtFirstAndLastDrop) {
   SprayLog log(kDelay);
   std::vector<AxisEvent> events;
   for (std::int64_t ms = 0; ms <= 40; ms += 2) {
@@ -44,7 +44,7 @@ TEST(SprayLog, MeasuresTheAxisWhenTheDropsLeave) {
   EXPECT_EQ(events[0].velocity_closed_mps(), 0.1);
 }
 
-TEST(SprayLog, SpraysOneAfterTheOtherKeepTheirOrder) {
+TEST(SprayLog, OverlappingSpraysKeepTheirOrder) {
   SprayLog log(kDelay);
   std::vector<std::int64_t> stops;
   for (std::int64_t ms = 0; ms <= 60; ms += 2) {
@@ -66,7 +66,7 @@ TEST(SprayLog, SpraysOneAfterTheOtherKeepTheirOrder) {
   EXPECT_EQ(stops, (std::vector<std::int64_t>{1, 2}));
 }
 
-TEST(SprayLog, ACloseWithoutAnOpenIsNothing) {
+TEST(SprayLog, CloseWithoutOpenIsIgnored) {
   SprayLog log(kDelay);
   log.close(at_ms(1));
   EXPECT_EQ(log.opened(), nullptr);

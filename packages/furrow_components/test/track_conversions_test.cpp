@@ -11,7 +11,7 @@
 namespace furrow::components {
 namespace {
 
-/// A camera one metre above the origin of F, its image's up along F's x.
+/// A camera one metre above the origin of F; the top of its image points along x of F.
 geometry::PinholeCamera camera() {
   return geometry::PinholeCamera({.width_px = 640,
                                   .height_px = 480,
@@ -44,7 +44,7 @@ furrow_msgs::msg::PlantInstance instance() {
   return instance;
 }
 
-TEST(ObservationConversion, CarriesAnInstanceToTheField) {
+TEST(ObservationConversion, ProjectsAnInstanceToTheField) {
   const auto seen = observe(instance(), camera(), pose(), {});
   ASSERT_TRUE(seen.ok()) << seen.error().message;
   // 100 px up and 100 px to the right at 500 px/m: forward and to the robot's right.
@@ -56,7 +56,7 @@ TEST(ObservationConversion, CarriesAnInstanceToTheField) {
   EXPECT_TRUE(seen->footprint.empty());
 }
 
-TEST(ObservationConversion, CarriesTheMask) {
+TEST(ObservationConversion, ProjectsTheMask) {
   ObservationParameters parameters;
   parameters.footprints = true;
   const auto seen = observe(instance(), camera(), pose(), parameters);
@@ -65,7 +65,7 @@ TEST(ObservationConversion, CarriesTheMask) {
   EXPECT_NEAR(seen->footprint.area_mm2(), 7 * 4.0, 8.0);
 }
 
-TEST(ObservationConversion, KnowsWhatTheBorderCuts) {
+TEST(ObservationConversion, MarksInstancesCutByTheBorder) {
   auto cut = instance();
   cut.box().x_offset(636);
   const auto seen = observe(cut, camera(), pose(), {});
@@ -73,7 +73,7 @@ TEST(ObservationConversion, KnowsWhatTheBorderCuts) {
   EXPECT_TRUE(seen->truncated);
 }
 
-TEST(ObservationConversion, RefusesDamagedInstances) {
+TEST(ObservationConversion, InvalidInstancesAreErrors) {
   ObservationParameters parameters;
   parameters.footprints = true;
   auto over = instance();
@@ -129,7 +129,7 @@ std::vector<tracking::Track> tracks() {
   return tracks;
 }
 
-TEST(TrackField, HoldsTheConfirmedTracksOfTheField) {
+TEST(TrackField, HasTheConfirmedTracksOfTheField) {
   TrackFieldParameters parameters;
   parameters.length_m = 5.0;
   const std::vector<std::string> species = {"violet", "thistle"};
@@ -162,7 +162,7 @@ TEST(TrackField, IsWrittenAndReadBack) {
   EXPECT_FALSE(write_field(field, "field.txt").ok());
 }
 
-TEST(TrackField, OfNothingIsEmpty) {
+TEST(TrackField, IsEmptyWithoutTracks) {
   const field::FieldModel field = field_of_tracks({}, {}, {});
   EXPECT_TRUE(field.plants.empty());
   EXPECT_TRUE(field.row_y_m.empty());

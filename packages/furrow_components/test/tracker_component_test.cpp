@@ -1,6 +1,5 @@
-// The tracker and the planner behind it, in simulated time, while odometry or images fail: what
-// cannot be used is counted, the health says so, and the planner is told that its targets are
-// stale.
+// Tracker and planner in simulated time, while odometry or images fail. Unusable input is counted
+// and shown by the health, and the planner treats no stale targets.
 
 #include <gtest/gtest.h>
 
@@ -27,10 +26,10 @@ namespace topics = msgs::topics;
 using nav_msgs::msg::Odometry;
 
 constexpr double kSpeed_mps = 0.5;
-constexpr double kFault_s = 2.0;  ///< from here on something is wrong
+constexpr double kFault_s = 2.0;  ///< start of the fault
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// What the tracker is given while the robot passes six weeds, and what came of it.
+/// The inputs of the tracker while the robot passes six weeds, and the results.
 struct World {
   double seconds = 5.0;
   /// Called for each message after kFault_s; false: it is not sent.
@@ -86,8 +85,8 @@ class Feeder final : public graph::Component {
   }
 
  private:
-  // The image centre lies 1.2 m ahead of the base; a weed there in each image is one in the field
-  // only when it moves down the image as the robot drives: 870 px for each metre.
+  // The image centre lies 1.2 m ahead of the base. A weed that stands still in the field moves down
+  // the image as the robot drives, by 870 px for each metre.
   void show(Time now) {
     furrow_msgs::msg::PlantInstances message;
     message.header(header(now, "camera"));
@@ -135,7 +134,7 @@ void run(World& world) {
   for (const auto& status : runtime.status()) world.last[status.name] = status.health;
 }
 
-TEST(TrackerComponent, SoundInputIsTreatedAndNothingIsStale) {
+TEST(TrackerComponent, ValidInputIsTreatedAndNothingIsStale) {
   World world;
   run(world);
   ASSERT_FALSE(world.tracks.empty());
@@ -147,7 +146,7 @@ TEST(TrackerComponent, SoundInputIsTreatedAndNothingIsStale) {
   EXPECT_EQ(world.counter("planner", "stale_tracks"), 0);
 }
 
-/// Whatever the odometry suffers: no view can be used, and all are told.
+/// With any fault of the odometry no view is used, and both components say so.
 void expect_views_unused(World& world, const std::string& counter) {
   world.seconds = 6.0;
   run(world);
@@ -157,14 +156,14 @@ void expect_views_unused(World& world, const std::string& counter) {
   EXPECT_LE(world.newest_stamp_s(), kFault_s);
 }
 
-TEST(TrackerComponent, ImagesWithoutOdometryAreGivenUp) {
+TEST(TrackerComponent, ImagesWithoutOdometryAreDropped) {
   World world;
   world.spoil = [](Odometry&) { return false; };
   expect_views_unused(world, "images_without_pose");
   EXPECT_GT(world.counter("planner", "no_pose"), 0) << "nor can the planner plan";
 }
 
-TEST(TrackerComponent, PosesThatAreNotFiniteAreCounted) {
+TEST(TrackerComponent, NonFinitePosesAreCounted) {
   World world;
   world.spoil = [](Odometry& odometry) {
     odometry.pose().pose().position().x(kNan);
@@ -183,7 +182,7 @@ TEST(TrackerComponent, OdometryThatGoesBackInTimeIsCounted) {
   expect_views_unused(world, "bad_odometry");
 }
 
-TEST(TrackerComponent, ACovarianceThatIsNotPositiveMakesTheTargetsStale) {
+TEST(TrackerComponent, InvalidCovarianceMakesTheTargetsStale) {
   World world;
   world.spoil = [](Odometry& odometry) {
     odometry.pose().covariance()[0] = -1.0;
@@ -196,7 +195,7 @@ TEST(TrackerComponent, ACovarianceThatIsNotPositiveMakesTheTargetsStale) {
   for (const auto& route : world.plans.back().routes()) EXPECT_TRUE(route.stops().empty());
 }
 
-TEST(TrackerComponent, LateOdometryDelaysTheTracksAndLosesNone) {
+TEST(TrackerComponent, LateOdometryDelaysTracksWithoutLoss) {
   World world;
   std::vector<Odometry> late;
   world.spoil = [&late](Odometry& odometry) {
@@ -211,7 +210,7 @@ TEST(TrackerComponent, LateOdometryDelaysTheTracksAndLosesNone) {
   EXPECT_GT(world.newest_stamp_s(), world.seconds - 0.7);
 }
 
-TEST(TrackerComponent, EmptyImagesAreCountedAndInTheEndDegradeTheHealth) {
+TEST(TrackerComponent, EmptyImagesAreCountedAndDegradeTheHealth) {
   World world;
   world.seconds = 9.0;
   world.spoil_images = [](furrow_msgs::msg::PlantInstances& message) {
@@ -223,7 +222,7 @@ TEST(TrackerComponent, EmptyImagesAreCountedAndInTheEndDegradeTheHealth) {
   EXPECT_EQ(world.last.at("tracker").level, graph::HealthLevel::kWarn);
 }
 
-TEST(TrackerComponent, WithoutImagesThePlannerSaysThatItsTargetsAreStale) {
+TEST(TrackerComponent, WithoutImagesThePlannerWarnsOfStaleTargets) {
   World world;
   world.spoil_images = [](furrow_msgs::msg::PlantInstances&) { return false; };
   run(world);

@@ -12,19 +12,18 @@
 
 namespace furrow::components {
 
-/// The sprays of a run as the drivers made them, in the order of the record. Events of axes that
-/// the tool does not have are left out.
+/// The sprays of a run as the drivers report them, in the order of the record. Events of axes that
+/// the tool does not have are skipped.
 [[nodiscard]] std::vector<actuation::Application> applications_of(
     const furrow_msgs::msg::RunRecord& record, const geometry::ToolModel& tool);
 
-/// What the run used and where, for its report: by nozzle, by crop row, by area; and when a tool
-/// made itself safe, when it did.
+/// Tables for the report: use by nozzle, by crop row and by area, and the safe states of the tool.
 [[nodiscard]] std::vector<ledger::ReportTable> use_tables(
     const furrow_msgs::msg::RunRecord& record,
     const std::vector<actuation::Application>& applications, const geometry::ToolModel& tool);
 
-/// as_applied.geojson into a folder, whole or not at all; nothing when the record does not say
-/// where on the earth the field is.
+/// Writes as_applied.geojson into a folder, whole or not at all. Writes nothing when the record has
+/// no georeference.
 [[nodiscard]] Status write_as_applied(const std::filesystem::path& folder,
                                       const furrow_msgs::msg::RunRecord& record,
                                       const std::vector<actuation::Application>& applications);

@@ -10,8 +10,8 @@ struct AxisPoint {
   double velocity_mps = 0.0;
 };
 
-/// The axis at a time, from two measurements: between them the cubic that fits both, outside of
-/// them on a straight line. @pre first.time <= second.time.
+/// The axis at a time, from two measurements. Between them it follows the cubic through both
+/// positions and velocities, outside of them a straight line. @pre first.time <= second.time.
 [[nodiscard]] AxisPoint axis_at(const AxisPoint& first, const AxisPoint& second, Time time);
 
 }  // namespace furrow::components

@@ -13,9 +13,9 @@ namespace furrow::components {
 /// Throws ConfigError.
 [[nodiscard]] field::SpeciesTable load_species(const std::filesystem::path& path);
 
-/// A field from a file: CSV or GeoJSON plants as they are; a preset (YAML) is generated from the
-/// seed. `length_m` > 0 sets the length of a generated field; a field of a file is as long as it
-/// is. Throws ConfigError with file, line and key.
+/// A field from a file: plants of a CSV or GeoJSON file, or a preset (YAML) generated from the
+/// seed. `length_m` > 0 sets the length of a generated field, not that of plants from a file.
+/// Throws ConfigError with file, line and key.
 [[nodiscard]] field::FieldModel load_field(const std::filesystem::path& path,
                                            const field::SpeciesTable& species, double length_m,
                                            std::uint64_t seed);

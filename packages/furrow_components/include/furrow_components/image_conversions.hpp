@@ -15,15 +15,15 @@ namespace furrow::components {
 [[nodiscard]] sensor_msgs::msg::Image to_msg(const cv::Mat& image, Time stamp,
                                              const std::string& frame);
 
-/// A matrix over the message's own bytes, which must outlive it and must not be written through it.
-/// bgr8, rgb8, mono8, 8UC3, 16UC1, 32FC1; kInvalidArgument for other encodings, big endian, and
-/// sizes that do not match the data.
+/// A matrix over the bytes of the message, which must outlive it and must not be written through
+/// it. Encodings are bgr8, rgb8, mono8, 8UC3, 16UC1 and 32FC1. kInvalidArgument: another encoding,
+/// a big-endian image, or a size that does not match the data.
 [[nodiscard]] Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message);
 
 /// A colour image in bgr order: bgr8 without a copy, rgb8 converted. Others as view_of.
 [[nodiscard]] Result<cv::Mat> bgr_of(const sensor_msgs::msg::Image& message);
 
-/// A depth image in metres: 32FC1 without a copy, 16UC1 (mm, as ROS has it) converted.
+/// A depth image in metres: 32FC1 without a copy, 16UC1 (mm, REP 118) converted.
 [[nodiscard]] Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message);
 
 /// Run lengths of a mask (8UC1, zero or not), row by row, starting with background.

@@ -8,7 +8,7 @@
 
 namespace furrow::components {
 
-/// What was measured of the nozzle of one axis.
+/// The calibration of the nozzle of one axis.
 struct CalibratedNozzle {
   std::string axis;
   actuation::NozzleCalibration calibration;
@@ -16,15 +16,16 @@ struct CalibratedNozzle {
   void visit(ParameterVisitor& v);
 };
 
-/// A calibration file: a list `nozzles` with one map per axis. Throws ConfigError with file, line
-/// and key; also when an axis is named twice or not at all.
+/// Reads a calibration file: a list `nozzles` with one map per axis. Throws ConfigError with file,
+/// line and key, also when an axis has two entries or an entry has no axis.
 [[nodiscard]] std::vector<CalibratedNozzle> load_nozzle_file(const std::filesystem::path& path);
 
 /// The entry of one axis. Throws ConfigError when the file has none.
 [[nodiscard]] actuation::NozzleCalibration load_nozzle(const std::filesystem::path& path,
                                                        const std::string& axis);
 
-/// The file's text; load_nozzle_file() reads the same numbers from it. `comment` stands above it.
+/// The text of a calibration file, which load_nozzle_file() reads without loss. `comment` becomes
+/// its first line.
 [[nodiscard]] std::string nozzle_file_text(const std::vector<CalibratedNozzle>& nozzles,
                                            const std::string& comment);
 

@@ -12,7 +12,7 @@
 
 namespace furrow::components {
 
-/// How what an image shows is carried to the ground.
+/// Noise and options of the projection from image to ground.
 struct ObservationParameters {
   double pixel_noise_px = 1.5;
   double depth_noise_m = 0.005;
@@ -25,9 +25,10 @@ struct ObservationParameters {
 /// The planar covariance, of (x_m, y_m, heading_rad), of a message's 6x6.
 [[nodiscard]] Eigen::Matrix3d planar_covariance(const nav_msgs::msg::Odometry& message);
 
-/// One plant of an image, in the field frame. Species are left to the caller. With `footprints` the
-/// mask is carried over by its pixels at the stem's depth, as on level ground. kInvalidArgument,
-/// kParse: a number that is not finite, or a mask that does not fill its box.
+/// One plant of an image, in the field frame, without its species. With `footprints` the mask is
+/// projected pixel by pixel at the depth of the stem, as on level ground.
+/// Errors: kInvalidArgument for a number that is not finite, kParse for a mask that does not fill
+/// its box.
 [[nodiscard]] Result<tracking::Observation> observe(const furrow_msgs::msg::PlantInstance& instance,
                                                     const geometry::PinholeCamera& camera,
                                                     const Eigen::Isometry3d& X_FC,

@@ -7,15 +7,15 @@
 
 namespace furrow::components {
 
-/// The base's poses over the last seconds, to look up the one at an image's stamp. Bounded.
+/// The poses of the base over the last seconds, for look-up by the stamp of an image. Bounded.
 class PoseBuffer {
  public:
   explicit PoseBuffer(Duration memory) : memory_(memory) {}
 
-  /// kStale: the stamp is not newer than the newest one, or ahead of it by more than the memory. A
-  /// single stamp that is wrong does not shut out those that follow; when kAgreeing in a row go on
-  /// from each other there, time has moved, and the last of them is taken. kInvalidArgument: not
-  /// finite.
+  /// kStale: the stamp is not newer than the newest one, or ahead of it by more than the memory. So
+  /// a single wrong stamp does not block the correct ones after it. After kAgreeing stamps ahead in
+  /// a row, each newer than the one before, time has jumped: the last of them is added.
+  /// kInvalidArgument: not finite.
   Status add(const BaseOdometry& odometry);
   /// Interpolated between two neighbours; extrapolated by its twist up to `ahead` beyond the
   /// newest. kUnavailable: empty. kStale: before the oldest or too far ahead.
@@ -29,8 +29,8 @@ class PoseBuffer {
   [[nodiscard]] bool is_astray(Time stamp);
 
   Duration memory_;
-  Time astray_;           ///< newest stamp too far ahead
-  int astray_count_ = 0;  ///< of these, in a row
+  Time astray_;           ///< newest stamp that was too far ahead
+  int astray_count_ = 0;  ///< stamps too far ahead in a row
   std::deque<BaseOdometry> poses_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace furrow::components {
 
-/// The parameter of components that only need to know the machine.
+/// The parameter of components that need the tool model only.
 struct ToolFileParameters {
   std::string tool_file;
 

@@ -21,10 +21,10 @@ struct TrackFieldParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// The strip of field that the robot saw, with each confirmed track as a plant. Kept is what stands
-/// at x in [0, length_m]; the width is the least that holds it. Rows are where crops line up:
-/// groups of at least five, more than 0.2 m from the next crop across. A track without a species
-/// takes the parameters' name for its kind. `species` names the tracks' votes.
+/// The field as the robot saw it: each confirmed track with x in [0, length_m] is a plant. The
+/// width is the least that holds them all. Crop rows are groups of at least five crops, more than
+/// 0.2 m across from the next crop. A track without a species gets the parameters' name for its
+/// kind. `species` names the tracks' votes.
 [[nodiscard]] field::FieldModel field_of_tracks(std::span<const tracking::Track> tracks,
                                                 std::span<const std::string> species,
                                                 const TrackFieldParameters& parameters);

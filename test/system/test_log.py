@@ -1,0 +1,143 @@
+"""The log of a run: console, run.log, rosout, levels, causes of the safe state, texts of libraries, and
+that simulated time gives the same lines."""
+
+import os
+import re
+import subprocess
+import unittest
+
+from furrow_case import FurrowCase, domain, furrow_program
+
+SHORT = ("--length", "1", "--seed", "3")
+# Slower than the deadline of the axis drivers: the tools enter their safe state.
+SLOW_HEARTBEAT = ("--set", "planner.heartbeat_rate_hz=10")
+LINE = re.compile(r" *\d+\.\d{3} s (DEBUG|INFO |WARN |ERROR|FATAL) ([\w.-]+): \S.*")
+
+
+class Log(FurrowCase):
+    def log(self, out=None):
+        return (out or self.out).joinpath("run.log").read_text()
+
+    def test_every_line_has_time_level_component_and_text(self):
+        self.run_graph(*SHORT, "--log-level", "debug")
+        lines = self.log().splitlines()
+        self.assertTrue(lines)
+        for line in lines:
+            self.assertRegex(line, LINE)
+        self.assertIn("furrow: run of graph 'weeding' starts, seed 3", self.log())
+
+    def test_simulated_time_gives_the_same_lines_on_any_number_of_threads(self):
+        logs = []
+        for threads in (1, 3):
+            out = self.folder / f"threads{threads}"
+            self.run_graph(*SHORT, "--log-level", "debug", "--threads", threads, out=out)
+            logs.append(self.log(out))
+        self.assertEqual(logs[0], logs[1])
+
+    def test_the_console_has_the_lines_of_the_file(self):
+        done = self.furrow("run", "--no-dds", "--clock", "lockstep", "--out", self.out, *SHORT)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for line in self.log().splitlines():
+            self.assertIn(line, done.stderr)
+
+    def test_levels_are_set_for_all_and_for_one_component(self):
+        self.run_graph(*SHORT, "--log-level", "fatal")
+        self.assertEqual(self.log(), "")
+        one = self.folder / "one"
+        self.run_graph(*SHORT, "--log-level", "fatal", "--log-level", "furrow=info", out=one)
+        components = {LINE.fullmatch(line)[2] for line in self.log(one).splitlines()}
+        self.assertEqual(components, {"furrow"})
+
+    def test_a_malformed_level_is_refused(self):
+        for level in ("loud", "planner=", "=warn"):
+            self.assert_refused(["run", "--out", self.out, "--log-level", level], "--log-level",
+                                "COMPONENT=LEVEL")
+
+    def test_a_run_that_does_not_start_leaves_no_log(self):
+        self.assert_refused(["run", "--no-dds", "--out", self.out,
+                             "--set", "planner.tool_file=nothing.urdf"], "nothing.urdf")
+        self.assertFalse((self.out / "run.log").exists())
+
+    def test_a_folder_that_cannot_be_written_is_refused_before_the_run(self):
+        self.assert_refused(["run", "--no-dds", "--out", "/proc/nothing/here"], "--out")
+
+    def test_a_warning_is_written_once_and_its_repetitions_are_counted(self):
+        self.run_graph(*SHORT, "--set", "perception.min_score=1.0",
+                       "--set", "tracker.max_empty_views=2")
+        lines = [line for line in self.log().splitlines() if " tracker: " in line]
+        self.assertRegex(lines[0], r"WARN  tracker: no plant in 2 images in a row; nothing is "
+                                   r"tracked$")
+        self.assertRegex(lines[1], r"WARN  tracker: \d+ more lines of: no plant in \d+ images")
+        self.assertEqual(len(lines), 2, lines)
+
+    def test_the_log_is_recorded_as_rosout(self):
+        self.run_graph(*SHORT, "--record", self.folder / "day")
+        info = self.bag_info(self.folder / "day_0.mcap")
+        self.assertGreater(info["counts"].get("rosout", 0), 0, info["counts"])
+
+    def test_causes_of_the_safe_state_and_changes_of_health_are_lines(self):
+        self.furrow("run", "--no-dds", "--clock", "lockstep", "--out", self.out, *SHORT,
+                    *SLOW_HEARTBEAT)
+        log = self.log()
+        self.assertRegex(log, r"ERROR axis_1: safe state entered: peer_lost\n")
+        self.assertRegex(log, r"ERROR axis_1: peer_lost at [\d.]+ s; the axis stopped and the valve "
+                              r"is shut until tool/reset\n")
+
+    def test_the_same_seed_gives_the_same_recording_with_its_log(self):
+        days = []
+        for name in ("one", "two"):
+            self.furrow("run", "--no-dds", "--clock", "lockstep", *SHORT, *SLOW_HEARTBEAT,
+                        "--out", self.folder / name, "--record", self.folder / f"{name}_day")
+            file = self.folder / f"{name}_day_0.mcap"
+            self.assertGreater(self.bag_info(file)["counts"].get("rosout", 0), 0)
+            (self.folder / "info.json").unlink()
+            days.append(file.read_bytes())
+        self.assertEqual(days[0], days[1])
+
+    def run_with(self, environment, *arguments):
+        """A run on the DDS domain of the test, with the texts of libraries."""
+        saved = dict(os.environ)
+        self.addCleanup(lambda: (os.environ.clear(), os.environ.update(saved)))
+        os.environ.update(environment)
+        done = self.furrow("run", "--clock", "lockstep", "--domain", domain(), "--out", self.out,
+                           *SHORT, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for line in done.stderr.splitlines():
+            if "opencv" in line or "fastdds" in line:
+                self.assertRegex(line, LINE)
+        return self.log()
+
+    def test_texts_of_opencv_are_lines(self):
+        log = self.run_with({"OPENCV_LOG_LEVEL": "DEBUG"}, "--log-level", "opencv=debug")
+        self.assertRegex(log, r"s (DEBUG|INFO ) opencv: \S")
+
+    def test_texts_of_fast_dds_are_lines(self):
+        profile = self.folder / "profile.xml"
+        profile.write_text("<dds><no_such_element/></dds>")
+        log = self.run_with({"FASTRTPS_DEFAULT_PROFILES_FILE": str(profile)})
+        self.assertRegex(log, r"s ERROR fastdds: \S")
+
+    def test_an_external_reader_gets_the_log_on_rosout(self):
+        number = domain()
+        reader = subprocess.Popen(
+            [furrow_program(), "topic", "echo", "rosout", "--domain", str(number), "--count", "1",
+             "--wait", "60"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(reader.wait)
+        self.addCleanup(reader.kill)
+        self.furrow("run", "--clock", "real", "--domain", number, "--out", self.out, "--length", "1",
+                    *SLOW_HEARTBEAT)
+        text, errors = reader.communicate(timeout=60)
+        self.assertIn("msg:", text, errors)
+
+    def test_each_process_and_the_supervisor_have_a_log(self):
+        self.furrow("up", "--domain", domain(), "--out", self.out, "--length", "1",
+                    *SLOW_HEARTBEAT)
+        logs = sorted(path.name for path in self.out.glob("run*.log"))
+        self.assertIn("run_supervisor.log", logs)
+        self.assertGreater(len(logs), 2)
+        texts = [path.read_text() for path in self.out.glob("run_*.log")]
+        self.assertTrue(any("safe state entered: peer_lost" in text for text in texts), texts)
+
+
+if __name__ == "__main__":
+    unittest.main()
