@@ -36,16 +36,31 @@ inline constexpr double kSpeed_mps = 0.5;
 
 enum class Cause { kEmergencyStop, kOdometryInvalid, kPlannerSilent };
 
+/// What the driver latches.
+inline std::string latched_by(Cause cause) {
+  switch (cause) {
+    case Cause::kEmergencyStop:
+      return "emergency_stop";
+    case Cause::kOdometryInvalid:
+      return "odometry_invalid";
+    case Cause::kPlannerSilent:
+      return "peer_lost";
+  }
+  return "";
+}
+
 struct Outcome {
   /// Called when the cause is brought about, before its message is published.
   std::function<void()> before_cause = [] {};
   std::vector<double> shut_after_ms;
   std::vector<std::chrono::steady_clock::time_point> caused;
-  std::vector<std::string> causes;
+  /// What latched although the feeder had not brought it about: a busy machine delays messages.
+  std::map<std::string, int> unexpected;
 };
 
 /// Robot, tracker and planner in one: drives on, has one plant after the other sprayed for long,
-/// and brings the cause about while the valve is open.
+/// and brings the cause about while the valve is open. Resets what latches besides, and gives up
+/// when nothing happens for kPatience.
 class Feeder final : public graph::Component {
  public:
   Feeder(graph::Context& context, Cause cause, Outcome& outcome)
@@ -84,6 +99,14 @@ class Feeder final : public graph::Component {
       odometry_out_.publish(
           to_msg(BaseOdometry{now, {x_m(now), 0.0, 0.0}, kSpeed_mps, 0.0}, kFieldFrame));
     }
+    if (progress_ == Time()) progress_ = now;
+    if (now - progress_ > kPatience) {
+      std::string latched;
+      for (const auto cause : latched_) latched += " " + std::string(msgs::to_string(cause));
+      context_.request_stop("no progress; mode " + mode_ + ", latched:" + latched);
+      return;
+    }
+    if (!latched_.empty() && now - reset_ > Duration::milliseconds(200)) reset(now);
     if (!waiting_for_valve_) return;
     if (planned_ && now - *planned_ < Duration::milliseconds(500)) return;
     planned_ = now;
@@ -111,10 +134,19 @@ class Feeder final : public graph::Component {
     heartbeat_out_.publish(std::move(heartbeat));
   }
 
+  void reset(Time now) {
+    reset_ = now;
+    reset_out_.publish(furrow_msgs::msg::ToolReset());
+  }
+
   void watch(const furrow_msgs::msg::AxisState& state) {
+    mode_ = msgs::to_string(state.mode());
+    latched_.assign(state.latched().begin(), state.latched().end());
     if (!waiting_for_valve_ || state.openings() == openings_) return;
     openings_ = state.openings();
     waiting_for_valve_ = false;
+    disturbed_ = false;
+    progress_ = context_.now();
     planned_.reset();
     outcome_.before_cause();
     caused_ = context_.now();
@@ -147,14 +179,28 @@ class Feeder final : public graph::Component {
       waiting_for_valve_ = true;
       return;
     }
-    if (event.event() != msgs::AxisEventKind::kSafeState || waiting_for_valve_) return;
-    outcome_.shut_after_ms.push_back(1e3 *
-                                     (graph::from_msg(event.closed()) - caused_).to_seconds());
-    outcome_.causes.push_back(msgs::to_string(event.cause()));
-    if (outcome_.causes.size() == repetitions()) {
+    if (event.event() != msgs::AxisEventKind::kSafeState) return;
+    const std::string told(msgs::to_string(event.cause()));
+    if (waiting_for_valve_ || told != latched_by(cause_)) {
+      ++outcome_.unexpected[told];
+      disturbed_ = true;
+      return;
+    }
+    if (disturbed_) {
+      outcome_.caused.pop_back();  // the valve may have been shut for another cause
+    } else {
+      outcome_.shut_after_ms.push_back(1e3 *
+                                       (graph::from_msg(event.closed()) - caused_).to_seconds());
+    }
+    if (outcome_.shut_after_ms.size() == repetitions()) {
       context_.request_stop("enough");
       return;
     }
+    end_cause();
+  }
+
+  void end_cause() {
+    progress_ = context_.now();
     silent_ = false;
     odometry_broken_ = false;
     beat();
@@ -162,8 +208,10 @@ class Feeder final : public graph::Component {
     odometry_out_.publish(
         to_msg(BaseOdometry{context_.now(), {x_m(context_.now()), 0.0, 0.0}, kSpeed_mps, 0.0},
                kFieldFrame));
-    reset_out_.publish(furrow_msgs::msg::ToolReset());
+    reset(context_.now());
   }
+
+  static constexpr Duration kPatience = Duration::milliseconds(10'000);
 
   graph::Context& context_;
   Cause cause_;
@@ -177,17 +225,23 @@ class Feeder final : public graph::Component {
   Time start_;
   Time caused_;
   Time last_beat_;
+  Time reset_;     // when one was last asked for
+  Time progress_;  // when the valve last opened or shut
+  std::string mode_;
+  std::vector<msgs::SafetyCause> latched_;
   std::optional<Time> planned_;
   std::int64_t stops_ = 0;
   std::uint64_t openings_ = 0;
   bool waiting_for_valve_ = true;
+  bool disturbed_ = false;  // another cause latched since the valve opened
   bool silent_ = false;
   bool odometry_broken_ = false;
 };
 
-/// `parameters` are of the driver, beside those that every repetition needs.
-inline void repeat(Cause cause, Outcome& outcome,
-                   const std::map<std::string, ParameterValue>& parameters = {}) {
+/// Whether all repetitions took place, each with the cause that was brought about; what disturbed
+/// them is printed. `parameters` are of the driver, beside those that every repetition needs.
+[[nodiscard]] inline bool repeat(Cause cause, Outcome& outcome,
+                                 const std::map<std::string, ParameterValue>& parameters = {}) {
   graph::Registry registry;
   registry.load_library(FURROW_AXIS_DRIVER_LIBRARY);
   registry.add(feeder_class<Feeder>(cause, outcome));
@@ -211,7 +265,12 @@ inline void repeat(Cause cause, Outcome& outcome,
     spec.components[0].parameters.push_back({name, value, {}});
   }
   graph::Runtime runtime(spec, registry, {.clock = graph::ClockMode::kReal, .threads = 1});
-  EXPECT_EQ(runtime.run().reason, "enough");
+  const std::string reason = runtime.run().reason;
+  for (const auto& [what, times] : outcome.unexpected) {
+    std::printf("latched besides: %s, %d times\n", what.c_str(), times);
+  }
+  if (reason != "enough") std::printf("%s\n", reason.c_str());
+  return reason == "enough";
 }
 
 }  // namespace furrow::components::safety_timing
