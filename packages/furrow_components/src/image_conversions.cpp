@@ -1,19 +1,59 @@
 #include "furrow_components/image_conversions.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <opencv2/imgproc.hpp>
+#include <string_view>
 
 #include "furrow_components/conversions.hpp"
 
 namespace furrow::components {
 namespace {
 
+constexpr int kAsItIs = -1;
+constexpr int kNoColour = -2;
+
 struct Encoding {
-  const char* name;
+  std::string_view name;
   int type;
+  int to_bgr;  // a cv::ColorConversionCodes
 };
-constexpr Encoding kEncodings[] = {{"bgr8", CV_8UC3},  {"rgb8", CV_8UC3},   {"8UC3", CV_8UC3},
-                                   {"mono8", CV_8UC1}, {"16UC1", CV_16UC1}, {"32FC1", CV_32FC1}};
+// The first of a type is what to_msg() calls it. OpenCV names a Bayer pattern by the second row's
+// second and third pixel, ROS by the first two of each row.
+constexpr Encoding kEncodings[] = {
+    {"bgr8", CV_8UC3, kAsItIs},
+    {"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
+    {"16UC1", CV_16UC1, kNoColour},
+    {"32FC1", CV_32FC1, kNoColour},
+    {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
+    {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
+    {"8UC3", CV_8UC3, kAsItIs},
+    {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
+    {"8UC4", CV_8UC4, cv::COLOR_BGRA2BGR},
+    {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
+    {"mono16", CV_16UC1, kNoColour},
+    {"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2BGR},
+    {"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2BGR},
+    {"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2BGR},
+    {"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2BGR},
+    {"yuv422", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
+    {"uyvy", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
+    {"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUY2},
+    {"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUY2},
+};
+
+const Encoding* find_encoding(std::string_view name) {
+  const auto* const found = std::ranges::find(kEncodings, name, &Encoding::name);
+  return found == std::end(kEncodings) ? nullptr : found;
+}
+
+Error unknown_encoding(const std::string& name) {
+  std::string known;
+  for (const Encoding& encoding : kEncodings) {
+    known += (known.empty() ? "" : ", ") + std::string(encoding.name);
+  }
+  return {ErrorCode::kInvalidArgument, "image encoding '" + name + "' is not one of " + known};
+}
 
 }  // namespace
 
@@ -24,7 +64,7 @@ sensor_msgs::msg::Image to_msg(const cv::Mat& image, Time stamp, const std::stri
   message.height(static_cast<std::uint32_t>(image.rows));
   for (const Encoding& encoding : kEncodings) {
     if (encoding.type == image.type()) {
-      message.encoding(encoding.name);
+      message.encoding(std::string(encoding.name));
       break;
     }
   }
@@ -38,14 +78,9 @@ sensor_msgs::msg::Image to_msg(const cv::Mat& image, Time stamp, const std::stri
 }
 
 Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message) {
-  int type = -1;
-  for (const Encoding& encoding : kEncodings) {
-    if (message.encoding() == encoding.name) type = encoding.type;
-  }
-  if (type < 0) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "image encoding '" + message.encoding() + "' is not supported"};
-  }
+  const Encoding* const encoding = find_encoding(message.encoding());
+  if (encoding == nullptr) return unknown_encoding(message.encoding());
+  const int type = encoding->type;
   if (message.is_bigendian() != 0 && CV_ELEM_SIZE1(type) > 1) {
     return Error{ErrorCode::kInvalidArgument, "big-endian images are not supported"};
   }
@@ -67,17 +102,25 @@ Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message) {
 Result<cv::Mat> bgr_of(const sensor_msgs::msg::Image& message) {
   auto view = view_of(message);
   if (!view.ok()) return view;
-  if (view->type() != CV_8UC3) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "image encoding '" + message.encoding() + "' is not an 8-bit colour image"};
+  const int to_bgr = find_encoding(message.encoding())->to_bgr;
+  if (to_bgr == kAsItIs) return view;
+  const bool halved = view->channels() == 2;  // one colour for two pixels of a row
+  if (to_bgr == kNoColour || (halved && view->cols % 2 != 0)) {
+    return Error{ErrorCode::kInvalidArgument, "image of " + std::to_string(view->cols) +
+                                                  " px width and encoding '" + message.encoding() +
+                                                  "' is not a colour image of 8 bits"};
   }
-  if (message.encoding() != "rgb8") return view;
   cv::Mat bgr;
-  cv::cvtColor(*view, bgr, cv::COLOR_RGB2BGR);
+  cv::cvtColor(*view, bgr, to_bgr);
   return bgr;
 }
 
-Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message) {
+bool is_grey(const sensor_msgs::msg::Image& message) {
+  const Encoding* const encoding = find_encoding(message.encoding());
+  return encoding != nullptr && encoding->to_bgr == cv::COLOR_GRAY2BGR;
+}
+
+Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message, double unit_m) {
   auto view = view_of(message);
   if (!view.ok() || view->type() == CV_32FC1) return view;
   if (view->type() != CV_16UC1) {
@@ -85,7 +128,7 @@ Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message) {
                  "image encoding '" + message.encoding() + "' is not a depth image"};
   }
   cv::Mat depth_m;
-  view->convertTo(depth_m, CV_32F, 1e-3);
+  view->convertTo(depth_m, CV_32F, unit_m);
   return depth_m;
 }
 

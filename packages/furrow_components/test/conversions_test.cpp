@@ -67,7 +67,7 @@ TEST(Conversions, BadImagesAreErrors) {
   message.data().resize(20);
   EXPECT_TRUE(fails());
   message = good;
-  message.encoding("yuv422");
+  message.encoding("h264");
   EXPECT_TRUE(fails());
   message = good;
   message.width(0);
@@ -75,7 +75,7 @@ TEST(Conversions, BadImagesAreErrors) {
   message = good;
   message.height(0xFFFFFFFF);
   EXPECT_TRUE(fails());
-  EXPECT_FALSE(bgr_of(to_msg(cv::Mat(4, 4, CV_8UC1, cv::Scalar(0)), Time(), "c")).ok());
+  EXPECT_FALSE(bgr_of(to_msg(cv::Mat(4, 4, CV_32FC1, cv::Scalar(0)), Time(), "c")).ok());
   EXPECT_FALSE(depth_m_of(good).ok());
 }
 

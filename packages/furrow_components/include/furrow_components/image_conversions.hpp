@@ -11,20 +11,26 @@
 
 namespace furrow::components {
 
-/// 8UC3 as bgr8, 8UC1 as mono8, 32FC1 as 32FC1. @pre one of these types, continuous or not.
+/// 8UC3 as bgr8, 8UC4 as bgra8, 8UC1 as mono8, 16UC1 and 32FC1 by these names. @pre one of these types, continuous or not.
 [[nodiscard]] sensor_msgs::msg::Image to_msg(const cv::Mat& image, Time stamp,
                                              const std::string& frame);
 
-/// A matrix over the bytes of the message, which must outlive it and must not be written through
-/// it. Encodings are bgr8, rgb8, mono8, 8UC3, 16UC1 and 32FC1. kInvalidArgument: another encoding,
-/// a big-endian image, or a size that does not match the data.
+/// A matrix over the message's own bytes, which must outlive it and must not be written through it.
+/// Encodings as ROS names them (sensor_msgs/image_encodings.hpp): bgr8, rgb8, bgra8, rgba8, 8UC3,
+/// 8UC4, mono8, 8UC1, bayer_{rggb,bggr,gbrg,grbg}8, yuv422 (or uyvy), yuv422_yuy2 (or yuyv), 16UC1,
+/// mono16, 32FC1. kInvalidArgument for others, big endian, and sizes that do not match the data.
 [[nodiscard]] Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message);
 
-/// A colour image in bgr order: bgr8 without a copy, rgb8 converted. Others as view_of.
+/// A colour image in bgr order: bgr8 and 8UC3 without a copy, others converted; mono8 with three
+/// equal channels. kInvalidArgument for what has no 8 bits a channel, and as view_of.
 [[nodiscard]] Result<cv::Mat> bgr_of(const sensor_msgs::msg::Image& message);
+/// Whether the image has no colour.
+[[nodiscard]] bool is_grey(const sensor_msgs::msg::Image& message);
 
-/// A depth image in metres: 32FC1 without a copy, 16UC1 (mm, REP 118) converted.
-[[nodiscard]] Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message);
+/// A depth image in metres: 32FC1 without a copy; 16UC1 and mono16 times `unit_m`, which is a
+/// millimetre by REP 118 and other with some cameras.
+[[nodiscard]] Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message,
+                                         double unit_m = 1e-3);
 
 /// Run lengths of a mask (8UC1, zero or not), row by row, starting with background.
 [[nodiscard]] std::vector<std::uint32_t> mask_runs(const cv::Mat& mask);
