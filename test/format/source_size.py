@@ -78,8 +78,18 @@ def python_functions(text):
             yield node.lineno, node.end_lineno - node.lineno + 1, node.name
 
 
+SHELL_FUNCTION = re.compile(r"^([ \t]*)(?:function\s+)?([\w:-]+)\s*\(\)\s*\{[^\n}]*\n"
+                            r"(?:.*\n)*?\1\}", re.MULTILINE)
+
+
+def shell_functions(text):
+    """Functions whose closing brace is indented as their name."""
+    for match in SHELL_FUNCTION.finditer(text):
+        yield text.count("\n", 0, match.start()) + 1, match.group().count("\n") + 1, match[2]
+
+
 FUNCTIONS = {".hpp": cpp_functions, ".h": cpp_functions, ".cpp": cpp_functions,
-             ".c": cpp_functions, ".py": python_functions}
+             ".c": cpp_functions, ".py": python_functions, ".sh": shell_functions}
 
 
 def too_long(suffix, text):

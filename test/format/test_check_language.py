@@ -164,6 +164,13 @@ class SourceSizeTest(unittest.TestCase):
     def test_python_functions(self):
         self.assertEqual(self.lengths("def f():\n    x = 1\n    return x\n", ".py"), [("f", 3)])
 
+    def test_shell_functions(self):
+        code = ("f() { g; }\nfunction h() {\n  if a; then\n    k() {\n      b\n    }\n  fi\n}\n"
+                "l() {\n  m \"${n}\"\n}\n")
+        self.assertEqual(self.lengths(code, ".sh"), [("h", 7), ("l", 3)])
+        self.assertIn("'f' has 61 lines", list(source_size.too_long(
+            ".sh", "f() {\n" + "  g\n" * 59 + "}\n"))[0][1])
+
 
 class WorkspaceTest(unittest.TestCase):
     def setUp(self):
