@@ -21,7 +21,7 @@ export TSAN_OPTIONS=suppressions=$PWD/tools/sanitizers/thread.supp${TSAN_OPTIONS
 export COLCON_DEFAULTS_FILE=$PWD/tools/colcon/$profile.yaml
 export CTEST_OUTPUT_ON_FAILURE=1
 
-# What an earlier run left would be counted too.
+# Results of an earlier run would be counted too.
 rm -rf "$build"/*/Testing "$build"/*/test_results
 status=0
 if (($# == 0)); then

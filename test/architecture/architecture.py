@@ -59,7 +59,7 @@ LAYERS = {
     "furrow_system_tests": {"furrow_cli"},
 }
 
-# Libraries that only some packages may use: include path, CMake name, and who.
+# Libraries that only some packages may use: include path, CMake name, those packages.
 RESTRICTED = [
     ("Fast DDS", re.compile(r"^(fastdds|fastrtps)/"), {"fastrtps", "fastdds"}, {"furrow_dds"}),
     ("Fast CDR", re.compile(r"^fastcdr/"), {"fastcdr"}, {"furrow_dds", "furrow_msgs"}),
@@ -219,7 +219,7 @@ def check_links(package):
 
 
 def loaded(name, needs):
-    """The libraries that one loads, directly and through others, each with who loads it."""
+    """The libraries that `name` loads, directly or not, each with the library that loads it."""
     found, waiting = {}, [name]
     while waiting:
         user = waiting.pop()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the unittest cases of one file and writes what came of each as a report in JUnit's form.
+"""Runs the unittest cases of one file and writes their results as a JUnit report.
 
     run_tests.py FILE REPORT.xml
 """

@@ -1,5 +1,4 @@
-"""What the axes did: where sprays land, what is recorded of them, when the tool is safe, and what is
-told of drives that are not there."""
+"""The axes: where sprays land, the record of the sprays, the safe state, drives that are absent."""
 
 import json
 import unittest

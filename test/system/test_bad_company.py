@@ -1,4 +1,4 @@
-"""What others in the domain may do to a distributed run: join late, throw garbage, never read."""
+"""A distributed run among other processes that join late, send garbage, or never read."""
 
 import os
 import signal
@@ -63,7 +63,7 @@ class BadCompanyTest(DeploymentCase):
 
     @staticmethod
     def throw_garbage(stop):
-        """Random bytes, and such that begin as RTPS does, to the ports of the domain's processes."""
+        """Sends random bytes, some with an RTPS header, to the ports of the domain's processes."""
         # RTPS: port 7400 + 250 * domain, discovery at +10 and data at +11 of each participant's 2.
         first = 7400 + 250 * domain()
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:

@@ -227,7 +227,7 @@ class BadInputTest(FurrowCase):
 
 
 class ShippedFilesTest(FurrowCase):
-    """The other side: what is shipped is well."""
+    """The shipped files are accepted, so that a refusal above is due to its change."""
 
     def test_every_shipped_graph(self):
         graphs = sorted((ROOT / "params/graph").glob("*.yaml"))

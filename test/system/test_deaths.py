@@ -1,4 +1,4 @@
-"""Processes of a distributed run that are killed one after the other, in real time."""
+"""A distributed run whose processes are killed one after the other, in real time."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Recordings by the command: made, played, looked at, mended; and faults on the way."""
+"""Commands for recordings: record, play, inspect, repair, and the faults of each."""
 
 import os
 import re

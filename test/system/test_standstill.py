@@ -1,5 +1,7 @@
-"""A robot that stands, rolls back and drives on: nothing is latched, nothing is sprayed meanwhile, and
-no more weeds are missed than without the stop. And valves that are at fault, as the ledger tells it."""
+"""A robot that stops, rolls back and drives on, and valves with faults.
+
+During a stop no cause is latched and nothing is sprayed. It costs no weed. The ledger shows the
+effects of valve faults."""
 
 import json
 import unittest

@@ -1,5 +1,6 @@
-"""What is measured against the clock, on a machine that does nothing else: how evenly the loops of the
-axes run, and drives that must be answered in time."""
+"""Measurements against the wall clock, on an idle machine.
+
+They cover the jitter of the axis loops, and drives that require an answer in time."""
 
 import html
 import json

@@ -1,4 +1,4 @@
-"""Whole runs over a short row, in simulated time: the same twice, accounted for, accurate."""
+"""Whole runs over a short row, in simulated time: repeatability, accounting, accuracy."""
 
 import json
 import subprocess
