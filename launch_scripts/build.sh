@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the workspace. Names the packages that it builds, and shows output only where one fails.
 #
-#   build.sh [--profile release|debug|address|thread] [colcon build arguments...]
+#   build.sh [--profile release|debug|address|thread|fuzz] [colcon build arguments...]
 #
 # A profile is a file of tools/colcon; each builds into folders of its own.
 set -euo pipefail

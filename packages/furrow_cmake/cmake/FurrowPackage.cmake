@@ -10,6 +10,7 @@
 include(GNUInstallDirs)
 
 set(FURROW_SANITIZE "" CACHE STRING "Sanitizers: address (with undefined), thread, or empty")
+option(FURROW_FUZZ "Instrument for libFuzzer and build the fuzz programs; needs clang" OFF)
 
 # Language level, build type, run paths and sanitizers for the whole package.
 macro(furrow_package)
@@ -32,7 +33,14 @@ macro(furrow_package)
   endif()
   # -O2 everywhere: -O3 costs build time and gains nothing measurable on the planners.
   set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
-  if(FURROW_SANITIZE STREQUAL "address")
+  if(FURROW_FUZZ)
+    if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+      message(FATAL_ERROR "FURROW_FUZZ needs clang: use launch_scripts/build.sh --profile fuzz")
+    endif()
+    add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+                        -fno-omit-frame-pointer -g1)
+    add_link_options(-fsanitize=address,undefined)
+  elseif(FURROW_SANITIZE STREQUAL "address")
     add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all
                         -fno-omit-frame-pointer -g1)
     add_link_options(-fsanitize=address,undefined)
@@ -50,6 +58,20 @@ macro(furrow_package)
   endif()
 endmacro()
 
+# A libFuzzer program, with FURROW_FUZZ only. tools/fuzz.sh runs all of them, each from the seeds that
+# the package's fuzz/make_seeds.py writes.
+function(furrow_fuzzer name)
+  if(NOT FURROW_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;DEFINITIONS" ${ARGN})
+  add_executable(${name}_fuzzer ${ARG_SOURCES})
+  furrow_warnings(${name}_fuzzer)
+  target_compile_definitions(${name}_fuzzer PRIVATE ${ARG_DEFINITIONS})
+  target_link_options(${name}_fuzzer PRIVATE -fsanitize=fuzzer)
+  target_link_libraries(${name}_fuzzer PRIVATE ${ARG_LINK})
+endfunction()
+
 # Sources that are not compiled in a batch with others of their target.
 function(furrow_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
@@ -60,7 +82,11 @@ function(furrow_warnings target)
   # compiler takes every source but the first for a header (subobject-linkage).
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                          -Wno-sign-conversion -Wno-missing-field-initializers -Wnon-virtual-dtor
-                         -Woverloaded-virtual -Wno-subobject-linkage -Werror)
+                         -Woverloaded-virtual)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # clang, which is used for fuzzing, warns of other things.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage -Werror)
+  endif()
 endfunction()
 
 # A library with its public headers under include/, installed and exported.
