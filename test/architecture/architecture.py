@@ -82,6 +82,7 @@ DDS_NAMES = re.compile(r"\beprosima::(fastdds|fastrtps)\b")
 CMAKE_NAMES = {
     "cyclonedds-dev": "CycloneDDS",
     "eigen": "Eigen3",
+    "libbz2-dev": "BZip2",
     "libbenchmark-dev": "benchmark",
     "libcli11-dev": "CLI11",
     "libconsole-bridge-dev": "console_bridge",
@@ -91,6 +92,9 @@ CMAKE_NAMES = {
     "liblemon-dev": "LEMON",
     "liblz4-dev": "liblz4",
     "libgeographiclib-dev": "geographiclib",
+    "libpng-dev": "libpng",
+    "libsqlite3-dev": "sqlite3",
+    "libturbojpeg0-dev": "libturbojpeg",
     "libgpiod-dev": "libgpiod",
     "libmodbus-dev": "libmodbus",
     "libopencv-dev": "OpenCV",

@@ -6,6 +6,8 @@ namespace furrow::cli {
 
 // Each adds one command, or some of a group, below the root.
 void add_bag_commands(Command root);
+void add_bag_copy_commands(Command root);
+void add_bag_export_command(Command root);
 void add_bench_graph_command(Command root);
 void add_bench_planner_command(Command root);
 void add_bench_program_commands(Command root);
@@ -29,6 +31,7 @@ void add_topic_commands(Command root);
 void add_up_command(Command root);
 
 // Groups that several files fill.
+[[nodiscard]] Command bag_group(Command root);
 [[nodiscard]] Command bench_group(Command root);
 [[nodiscard]] Command eval_group(Command root);
 [[nodiscard]] Command field_group(Command root);

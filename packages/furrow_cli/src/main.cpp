@@ -5,6 +5,12 @@
 
 namespace furrow::cli {
 
+Command bag_group(Command root) {
+  return root.group("bag",
+                    "Inspects, checks, repairs and converts recordings: MCAP, ROS 1 .bag, ROS 2 "
+                    ".db3 and rosbag2 folders.");
+}
+
 Command bench_group(Command root) {
   return root.group("bench", "Measures speeds, each beside an alternative.");
 }
@@ -46,6 +52,8 @@ int main(int argc, char** argv) {
   add_record_command(root);
   add_play_command(root);
   add_bag_commands(root);
+  add_bag_copy_commands(root);
+  add_bag_export_command(root);
   add_detect_command(root);
   return command_line.run(argc, argv);
 }

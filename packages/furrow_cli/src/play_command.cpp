@@ -27,6 +27,22 @@ struct PlayOptions {
   launch::TransportOptions transport;
 };
 
+/// Tells what is not played; true when all that was asked for is.
+bool tell_unplayed(const recording::Player& player) {
+  const recording::RecordingInfo& info = player.recording();
+  if (!info.damage.empty())
+    std::cerr << "furrow: the recording is not whole: " << info.damage << '\n';
+  for (const std::string& fault : info.faults) std::cerr << "furrow: left out: " << fault << '\n';
+  for (const auto& topic : player.unplayable()) {
+    std::cerr << "furrow: " << topic.name << " is not played (" << topic.messages
+              << " messages): " << topic.reason << '\n';
+  }
+  for (const std::string& pattern : player.unmatched_patterns()) {
+    std::cerr << "furrow: --topics: no topic matches '" << pattern << "'\n";
+  }
+  return info.whole() && player.unplayable().empty() && player.unmatched_patterns().empty();
+}
+
 recording::Player open(PlayOptions options) {
   for (const std::string& remap : options.remaps) {
     const auto equals = remap.find('=');
@@ -40,7 +56,10 @@ recording::Player open(PlayOptions options) {
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   auto player = recording::Player::open(files, options.player);
   if (!player) throw ConfigError(player.error().message);
-  if (player->topics().empty()) throw ConfigError("no topic of the recording is to be played");
+  if (player->topics().empty()) {
+    tell_unplayed(*player);
+    throw ConfigError("no topic of the recording can be played");
+  }
   return std::move(player).value();
 }
 
@@ -107,6 +126,7 @@ int report(const recording::DdsPlayerStatus& status) {
 
 int play(const PlayOptions& options) {
   recording::Player opened = open(options);
+  const bool complete = tell_unplayed(opened);
   const Time begin = opened.begin();
   const double length_s = (opened.end() - begin).to_seconds();
   std::atomic<bool> stopped = false;
@@ -133,7 +153,7 @@ int play(const PlayOptions& options) {
   const bool delivered = stopped || transport.flush(kPatience);
   if (!delivered) std::cerr << "furrow: not everything was acknowledged\n";
   const int code = report(player.status());
-  return delivered ? code : 1;
+  return delivered && complete ? code : 1;
 }
 
 }  // namespace
@@ -142,9 +162,10 @@ void add_play_command(Command root) {
   auto options = std::make_shared<PlayOptions>();
   Command command = root.subcommand(
       "play", "Plays recordings to a running system, with the QoS that was recorded.");
-  command.option("files", options->files, "MCAP files of one recording, or of one clock")
-      .required()
-      .existing_file();
+  command
+      .option("recordings", options->files,
+              "files or rosbag2 folders, of one recording or of one clock")
+      .required();
   command.option("--rate", options->player.rate, "recorded seconds per second")
       .range(0.001, 1000.0);
   command.option("--start", options->start_s, "where to start, s from the first message")

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <optional>
 
@@ -106,7 +107,16 @@ void obey(const std::string& line, recording::DdsRecorder& recorder, Requests& r
 
 int report(const recording::RecorderStatus& status, const std::vector<std::string>& skipped) {
   std::vector<std::vector<std::string>> rows = {{"topic", "messages", "MB", "lost"}};
-  for (const recording::RecordedTopic& topic : status.topics) {
+  // A latched topic has a channel for each publisher.
+  std::map<std::string, recording::RecordedTopic> by_name;
+  for (const recording::RecordedTopic& channel : status.topics) {
+    recording::RecordedTopic& topic = by_name[channel.name];
+    topic.name = channel.name;
+    topic.messages += channel.messages;
+    topic.bytes += channel.bytes;
+    topic.dropped += channel.dropped;
+  }
+  for (const auto& [name, topic] : by_name) {
     rows.push_back({topic.name, std::to_string(topic.messages),
                     fixed(static_cast<double>(topic.bytes) * 1e-6, 3),
                     std::to_string(topic.dropped)});

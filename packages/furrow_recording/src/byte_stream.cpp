@@ -16,12 +16,12 @@ Error system_error(const std::string& what, ErrorCode code = ErrorCode::kIo) {
   return {code, what + ": " + std::generic_category().message(errno)};
 }
 
-// The page cache takes memory in blocks as large as a call allows. Blocks of 2 MiB and more are
-// those that a virtual machine gives back to its host when they are free: written to, they have to
-// be fetched again, at a fifth of the disk's speed.
+// The page cache allocates blocks as large as a call allows. A virtual machine returns free blocks
+// of 2 MiB and more to its host. Writing to such a block fetches it again, at a fifth of the disk's
+// speed.
 constexpr std::size_t kMaxBytesOfCall = std::size_t{1} << 20;
 
-// The disk is set to work as often, and not only once the kernel finds that too much is waiting.
+// Writeback starts this often, instead of when the kernel finds too much waiting.
 constexpr off_t kBytesPerWriteback = off_t{8} << 20;
 
 class Descriptor {
@@ -63,7 +63,7 @@ class FileSink final : public Sink {
       return system_error("cannot shorten " + path_);
     }
     size_ = offset;
-    handed_over_ = std::min(handed_over_, offset);
+    writeback_started_ = std::min(writeback_started_, offset);
     return {};
   }
 
@@ -73,17 +73,18 @@ class FileSink final : public Sink {
 
  private:
   void start_writeback() {
-    if (size_ - handed_over_ >= kBytesPerWriteback) {
-      // A hint: a file system without it is as good, and errors of the disk are told by sync().
-      (void)sync_file_range(fd_.get(), handed_over_, size_ - handed_over_, SYNC_FILE_RANGE_WRITE);
-      handed_over_ = size_;
+    if (size_ - writeback_started_ >= kBytesPerWriteback) {
+      // A hint: sync() reports errors of the disk.
+      (void)sync_file_range(fd_.get(), writeback_started_, size_ - writeback_started_,
+                            SYNC_FILE_RANGE_WRITE);
+      writeback_started_ = size_;
     }
   }
 
   Descriptor fd_;
   std::string path_;
   off_t size_ = 0;
-  off_t handed_over_ = 0;
+  off_t writeback_started_ = 0;
 };
 
 class FileSource final : public Source {

@@ -20,7 +20,7 @@ namespace furrow::mcap {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
-/// Appends fields in MCAP's form (little endian, length before content).
+/// Appends fields in MCAP's encoding (little endian, length before content).
 class ByteWriter {
  public:
   explicit ByteWriter(Bytes& bytes) : bytes_(bytes) {}
@@ -62,12 +62,16 @@ class ByteWriter {
   void end_array(std::size_t length_at) {
     overwrite(length_at, static_cast<std::uint32_t>(bytes_.size() - length_at - 4));
   }
-  /// Opcode and length; end_record() fills the length in.
+  /// Writes opcode and an empty length, which end_record() fills in.
   [[nodiscard]] std::size_t begin_record(std::uint8_t opcode) {
     number(opcode);
     const std::size_t at = bytes_.size();
     number(std::uint64_t{0});
     return at;
+  }
+  /// What was appended to the record so far.
+  [[nodiscard]] ByteView content_of(std::size_t length_at) const {
+    return ByteView(bytes_).subspan(length_at + sizeof(std::uint64_t));
   }
   void end_record(std::size_t length_at) {
     overwrite(length_at, static_cast<std::uint64_t>(bytes_.size() - length_at - 8));
@@ -83,14 +87,14 @@ class ByteWriter {
   Bytes& bytes_;
 };
 
-/// Takes fields off; beyond the end it gives zeros and ok() is false from then on.
+/// Reads fields from the front. Beyond the end it returns zeros, and ok() stays false.
 class ByteReader {
  public:
   explicit ByteReader(ByteView bytes) : bytes_(bytes) {}
 
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
-  /// What is not read yet.
+  /// The bytes not read yet.
   [[nodiscard]] ByteView rest() const { return bytes_; }
 
   template <std::unsigned_integral T>
@@ -103,6 +107,7 @@ class ByteReader {
     }
     return value;
   }
+  /// A time that messages are ordered by. ok() becomes false beyond 2^63 ns (year 2262).
   Time time() {
     const auto ns = number<std::uint64_t>();
     if (ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
@@ -110,6 +115,11 @@ class ByteReader {
       return {};
     }
     return Time::from_nanoseconds(static_cast<std::int64_t>(ns));
+  }
+  /// A time that only describes. Values beyond 2^63 become negative and are written back unchanged:
+  /// some writers put 2^64-1 where there is no message.
+  Time described_time() {
+    return Time::from_nanoseconds(static_cast<std::int64_t>(number<std::uint64_t>()));
   }
   ByteView raw(std::uint64_t size) {
     if (!ok_ || size > bytes_.size()) {

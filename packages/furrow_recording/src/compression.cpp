@@ -1,5 +1,6 @@
 #include "compression.hpp"
 
+#include <bzlib.h>
 #include <lz4frame.h>
 #include <zstd.h>
 
@@ -17,11 +18,15 @@ struct ZstdDelete {
   void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
 };
 
+struct BzipEnd {
+  void operator()(bz_stream* stream) const { BZ2_bzDecompressEnd(stream); }
+};
+
 Error malformed(std::string_view format, std::string_view why) {
   return {ErrorCode::kParse, "malformed " + std::string(format) + " data: " + std::string(why)};
 }
 
-/// Room for more output, but never beyond `size`; false when there is all that may come.
+/// Makes room for more output, at most `size` in all; false when there is no more room to make.
 bool grow(Bytes& unpacked, std::size_t filled, std::uint64_t size) {
   if (filled < unpacked.size()) {
     return true;
@@ -32,6 +37,13 @@ bool grow(Bytes& unpacked, std::size_t filled, std::uint64_t size) {
   const std::uint64_t wanted = std::max<std::uint64_t>(kGrowthBytes, 2 * unpacked.size());
   unpacked.resize(static_cast<std::size_t>(std::min(size, wanted)));
   return true;
+}
+
+Status check_size(const Bytes& unpacked, std::uint64_t size) {
+  if (unpacked.size() != size) {
+    return Error{ErrorCode::kParse, "a chunk unpacks to another size than it announces"};
+  }
+  return {};
 }
 
 Status unpack_zstd(ByteView packed, std::uint64_t size, Bytes& unpacked) {
@@ -145,6 +157,47 @@ Result<ByteView> Packer::pack(ByteView bytes) {
   return ByteView(packed_).first(size);
 }
 
+Status unpack_bzip2(ByteView packed, std::uint64_t size, Bytes& unpacked) {
+  unpacked.clear();
+  bz_stream stream{};
+  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
+    return Error{ErrorCode::kUnavailable, "no memory to unpack bzip2"};
+  }
+  const std::unique_ptr<bz_stream, BzipEnd> end(&stream);
+  // The library does not write to its input, but lacks the const.
+  stream.next_in = reinterpret_cast<char*>(const_cast<std::byte*>(packed.data()));
+  std::size_t fed = 0;
+  std::size_t filled = 0;
+  int state = BZ_OK;
+  while (state == BZ_OK) {
+    constexpr std::size_t kMaxFeed = 1u << 30;
+    if (stream.avail_in == 0) {
+      stream.avail_in = static_cast<unsigned>(std::min(packed.size() - fed, kMaxFeed));
+      fed += stream.avail_in;
+    }
+    const bool room = grow(unpacked, filled, size);
+    const auto space = static_cast<unsigned>(std::min(unpacked.size() - filled, kMaxFeed));
+    stream.next_out = reinterpret_cast<char*>(unpacked.data() + filled);
+    stream.avail_out = space;
+    const unsigned in_before = stream.avail_in;
+    state = BZ2_bzDecompress(&stream);
+    filled += space - stream.avail_out;
+    if (state == BZ_OK && stream.avail_out == space && stream.avail_in == in_before) {
+      return malformed("bzip2", room ? "cut short" : "longer than announced");
+    }
+  }
+  if (state != BZ_STREAM_END) {
+    return malformed("bzip2", "error " + std::to_string(state));
+  }
+  unpacked.resize(filled);
+  return check_size(unpacked, size);
+}
+
+Status unpack_zstd_frame(ByteView packed, std::uint64_t max_size, Bytes& unpacked) {
+  unpacked.clear();
+  return unpack_zstd(packed, max_size, unpacked);
+}
+
 Status unpack(Compression compression, ByteView packed, std::uint64_t size, Bytes& unpacked) {
   unpacked.clear();
   Status status;
@@ -159,10 +212,7 @@ Status unpack(Compression compression, ByteView packed, std::uint64_t size, Byte
       status = unpack_zstd(packed, size, unpacked);
       break;
   }
-  if (status && unpacked.size() != size) {
-    return Error{ErrorCode::kParse, "a chunk unpacks to another size than it announces"};
-  }
-  return status;
+  return status ? check_size(unpacked, size) : status;
 }
 
 }  // namespace furrow::mcap

@@ -11,11 +11,11 @@
 
 namespace furrow::mcap {
 
-/// As it stands in a chunk: "", "lz4", "zstd".
+/// The name in a chunk: "", "lz4", "zstd".
 [[nodiscard]] std::string_view compression_name(Compression compression);
 [[nodiscard]] std::optional<Compression> compression_from_name(std::string_view name);
 
-/// Packs chunks; keeps its working memory between them.
+/// Compresses chunks. Keeps its working memory between them.
 class Packer {
  public:
   Packer(Compression compression, int zstd_level);
@@ -32,9 +32,13 @@ class Packer {
   Bytes packed_;
 };
 
-/// Unpacks to exactly `size` bytes, else kParse. Memory grows with what comes out, so that a wrong
+/// Unpacks to exactly `size` bytes, else kParse. Memory grows with the output, so that a wrong
 /// `size` takes none.
 [[nodiscard]] Status unpack(Compression compression, ByteView packed, std::uint64_t size,
                             Bytes& unpacked);
+/// As unpack(), of bzip2, which ROS 1 uses.
+[[nodiscard]] Status unpack_bzip2(ByteView packed, std::uint64_t size, Bytes& unpacked);
+/// Unpacks one zstd frame of at most `max_size` bytes; kParse when it is malformed or larger.
+[[nodiscard]] Status unpack_zstd_frame(ByteView packed, std::uint64_t max_size, Bytes& unpacked);
 
 }  // namespace furrow::mcap

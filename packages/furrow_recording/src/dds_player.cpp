@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -19,13 +20,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kLatenessSamples = 4096;
 constexpr std::chrono::milliseconds kReaderPollPeriod{5};
-/// Readers of one process come one after another, and find their writers a little later than
-/// these find them.
+/// Readers of one process are discovered one after another, and match a little later than their
+/// writers do.
 constexpr std::chrono::milliseconds kSettle{500};
-/// Topics whose first message is larger are sent by a thread of the transport, so that they hold up
-/// no other; the rest on the player's own, which is then late rather than to lose one.
+/// The transport sends topics whose first message is larger, so that they delay no other topic. The
+/// player's thread sends the rest: it is late rather than losing a message.
 constexpr std::size_t kQueuedBytes = 64 * 1024;
 constexpr int kVolatileDepth = 100;
+constexpr int kStaticDepth = 100;
 constexpr std::string_view kClockType = "rosgraph_msgs/msg/Clock";
 
 Time steady_time(Clock::time_point at = Clock::now()) {
@@ -36,7 +38,7 @@ Clock::time_point steady_point(Time time) {
   return Clock::time_point(std::chrono::nanoseconds(time.count_ns()));
 }
 
-/// What one writer must offer so that the readers of all recorded ones take it.
+/// The QoS of one writer that satisfies the readers of all recorded writers.
 msgs::Qos strongest(const TopicDescription& topic) {
   msgs::Qos qos;
   qos.reliability =
@@ -52,7 +54,11 @@ msgs::Qos strongest(const TopicDescription& topic) {
     qos.deadline = shortest(qos.deadline, offered.deadline);
     qos.liveliness_lease = shortest(qos.liveliness_lease, offered.liveliness_lease);
   }
-  if (qos.durability == msgs::Durability::kVolatile) {
+  if (topic.latched()) {
+    qos.durability = msgs::Durability::kTransientLocal;
+    // Stands for all publishers of static transforms, however many there were.
+    qos.depth = topic.is_static_transforms() ? std::max(qos.depth, kStaticDepth) : qos.depth;
+  } else {
     qos.depth = std::max(qos.depth, kVolatileDepth);
   }
   qos.depth = std::clamp(qos.depth, 1, 1000);
@@ -96,34 +102,34 @@ class DdsPlayer::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  /// Calls with the player's lock held, then looks again what is due.
+  /// Calls with the player's lock held, then lets the thread look again what is due.
   template <class Function>
   auto with_player(Function function) {
-    const std::lock_guard lock(mutex_);
+    const auto lock = take_turn();
     changed_ = true;
     wake_.notify_one();
     return function(player_, steady_time());
   }
 
   void stop() {
+    ending_ = true;
     {
-      const std::lock_guard lock(mutex_);
-      ending_ = true;
+      const auto lock = take_turn();  // the thread waits, or tests `ending_` next
+      wake_.notify_one();
     }
-    wake_.notify_one();
     if (thread_.joinable()) {
       thread_.join();
     }
   }
 
   bool wait(Duration timeout) {
-    std::unique_lock lock(mutex_);
+    auto lock = take_turn();
     return done_.wait_for(lock, std::chrono::nanoseconds(timeout.count_ns()),
                           [this] { return finished_; });
   }
 
   [[nodiscard]] DdsPlayerStatus status() const {
-    const std::lock_guard lock(mutex_);
+    const auto lock = take_turn();
     DdsPlayerStatus status;
     status.messages = messages_;
     status.dropped = dropped_;
@@ -142,6 +148,16 @@ class DdsPlayer::Impl {
   }
 
  private:
+  /// The lock for callers. While a caller waits for it, the thread stops between two messages: a
+  /// thread that always has a message due would otherwise keep every caller out.
+  [[nodiscard]] std::unique_lock<std::mutex> take_turn() const {
+    ++callers_;
+    std::unique_lock lock(mutex_);
+    --callers_;
+    free_.notify_one();
+    return lock;
+  }
+
   void wait_for_readers(std::unique_lock<std::mutex>& lock) {
     const auto deadline =
         Clock::now() + std::chrono::nanoseconds(options_.wait_for_readers.count_ns());
@@ -159,7 +175,7 @@ class DdsPlayer::Impl {
       if (last > 0 && Clock::now() - changed_at >= kSettle) {
         return;
       }
-      wake_.wait_for(lock, kReaderPollPeriod, [this] { return ending_; });
+      wake_.wait_for(lock, kReaderPollPeriod, [this] { return ending_.load(); });
     }
   }
 
@@ -167,39 +183,42 @@ class DdsPlayer::Impl {
     std::unique_lock lock(mutex_);
     wait_for_readers(lock);
     while (!ending_) {
+      free_.wait(lock, [this] { return callers_ == 0; });
       changed_ = false;
       const Time now = steady_time();
       const auto event = player_.next(now);
-      if (!event) {
-        ++faults_;
-        last_fault_ = event.error().message;
-        if (event.error().code == ErrorCode::kIo) {
-          finish();
-          return;
-        }
+      if (event) {
+        take(*event, now, lock);
         continue;
       }
-      if (const auto* message = std::get_if<PlayedMessage>(&*event)) {
-        play(*message, now);
-      } else if (const auto* clock = std::get_if<PlayedClock>(&*event)) {
-        if (clock_) {
-          clock_->write(clock_payload(clock->time));
-        }
-      } else if (const auto* pause = std::get_if<PlayerWait>(&*event)) {
-        const auto woken = [this] { return changed_ || ending_; };
-        if (pause->until) {
-          wake_.wait_until(lock, steady_point(*pause->until), woken);
-        } else {
-          wake_.wait(lock, woken);
-        }
-      } else {
-        finish();
-        // It may be sought back.
-        wake_.wait(lock, [this] { return changed_ || ending_; });
-        finished_ = ending_;
+      ++faults_;
+      last_fault_ = event.error().message;
+      if (event.error().code == ErrorCode::kIo) {
+        break;
       }
     }
     finish();
+  }
+
+  void take(const PlayerEvent& event, Time now, std::unique_lock<std::mutex>& lock) {
+    const auto woken = [this] { return changed_ || ending_; };
+    if (const auto* message = std::get_if<PlayedMessage>(&event)) {
+      play(*message, now);
+    } else if (const auto* clock = std::get_if<PlayedClock>(&event)) {
+      if (clock_) {
+        clock_->write(clock_payload(clock->time));
+      }
+    } else if (const auto* pause = std::get_if<PlayerWait>(&event)) {
+      if (pause->until) {
+        wake_.wait_until(lock, steady_point(*pause->until), woken);
+      } else {
+        wake_.wait(lock, woken);
+      }
+    } else {
+      finish();
+      wake_.wait(lock, woken);  // for a seek back
+      finished_ = ending_;
+    }
   }
 
   void play(const PlayedMessage& message, Time now) {
@@ -239,18 +258,20 @@ class DdsPlayer::Impl {
   std::unique_ptr<dds::RawWriter> clock_;
 
   mutable std::mutex mutex_;
+  mutable std::atomic<int> callers_ = 0;  ///< that wait for the lock
+  mutable std::condition_variable free_;  ///< a caller has taken the lock
   std::condition_variable wake_;
   std::condition_variable done_;
   Player player_;
   bool changed_ = false;
-  bool ending_ = false;
+  std::atomic<bool> ending_ = false;
   bool finished_ = false;
   std::uint64_t messages_ = 0;
   std::uint64_t dropped_ = 0;
   std::uint64_t faults_ = 0;
   std::string last_fault_;
   std::vector<double> lateness_s_;
-  std::thread thread_;  // it uses all others
+  std::thread thread_;  ///< last, because it uses all other members
 };
 
 DdsPlayer::DdsPlayer(dds::DdsTransport& transport, Player player, const DdsPlayerOptions& options)

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -15,10 +16,10 @@ namespace furrow::recording {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{20};
-/// Messages of one topic between the wire and the recorder's queue.
+/// Messages of one topic between the transport and the recorder's queue.
 constexpr int kReaderDepth = 100;
 
-/// What every one of these writers offers at least.
+/// The QoS that all of these writers offer.
 msgs::Qos weakest(const std::vector<dds::EndpointInfo>& writers) {
   msgs::Qos qos;
   qos.reliability = msgs::Reliability::kReliable;
@@ -38,7 +39,7 @@ std::vector<msgs::Qos> distinct_qos(const std::string& topic,
   for (const dds::EndpointInfo& writer : writers) {
     msgs::Qos qos = writer.qos;
     if (qos.depth == 0 && known != nullptr) {
-      qos.depth = known->qos.depth;  // it does not go over the wire
+      qos.depth = known->qos.depth;  // the depth is not transmitted
     }
     const bool is_known =
         std::any_of(profiles.begin(), profiles.end(), [&qos](const msgs::Qos& other) {
@@ -52,6 +53,46 @@ std::vector<msgs::Qos> distinct_qos(const std::string& topic,
   }
   return profiles;
 }
+
+/// The channels of one topic. Each publisher of a latched topic has its own: of each, the last
+/// message holds. Used by the reader's callback only.
+class RecordedChannels {
+ public:
+  RecordedChannels(RecorderThread& recorder, TopicDescription topic)
+      : recorder_(recorder), topic_(std::move(topic)) {
+    if (!topic_.latched()) {
+      shared_ = recorder_.add_topic(topic_);
+    }
+  }
+
+  std::size_t number(const dds::Guid& writer) {
+    if (shared_) {
+      return *shared_;
+    }
+    const auto known = numbers_.find(writer);
+    if (known != numbers_.end()) {
+      return known->second;
+    }
+    TopicDescription topic = topic_;
+    topic.publisher = hexadecimal(writer);
+    return numbers_[writer] = recorder_.add_topic(topic);
+  }
+
+ private:
+  static std::string hexadecimal(const dds::Guid& guid) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text;
+    for (const std::uint8_t byte : guid.bytes) {
+      text += {kDigits[byte >> 4U], kDigits[byte & 0xFU]};
+    }
+    return text;
+  }
+
+  RecorderThread& recorder_;
+  TopicDescription topic_;
+  std::optional<std::size_t> shared_;  ///< of all publishers
+  std::map<dds::Guid, std::size_t> numbers_;
+};
 
 }  // namespace
 
@@ -155,13 +196,13 @@ class DdsRecorder::Impl {
 
   void subscribe(const std::string& name, const std::string& type_name, const msgs::Qos& qos,
                  const std::vector<msgs::Qos>& offered) {
-    const std::size_t number =
-        recorder_.add_topic(describe_topic(name, type_name, offered, style_));
+    const auto topics = std::make_shared<RecordedChannels>(
+        recorder_, describe_topic(name, type_name, offered, style_));
     try {
       auto reader =
-          transport_.make_raw_reader(name, type_name, qos, [this, number](dds::RawMessage message) {
+          transport_.make_raw_reader(name, type_name, qos, [this, topics](dds::RawMessage message) {
             recorder_.record(
-                number, message.reception_time, message.source_time,
+                topics->number(message.writer), message.reception_time, message.source_time,
                 std::make_shared<const std::vector<std::byte>>(std::move(message.payload)));
           });
       readers_[name] = {type_name, qos, std::move(reader)};

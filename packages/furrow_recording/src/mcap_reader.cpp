@@ -1,44 +1,54 @@
 #include "furrow_recording/mcap_reader.hpp"
 
-#include <algorithm>
-#include <array>
+#include <optional>
 #include <utility>
 
 #include "reader_impl.hpp"
+#include "record_source.hpp"
 #include "summary_section.hpp"
 
 namespace furrow::mcap {
 namespace {
 
-Result<Header> read_header(const Source& source, const ReaderLimits& limits) {
-  std::array<std::byte, kMagic.size()> magic{};
-  if (source.size() < magic.size()) {
-    return Error{ErrorCode::kParse, "no MCAP file: shorter than its magic bytes"};
+/// The end of a file, as far as it can be read.
+struct End {
+  std::optional<Tail> tail;
+  RepeatedSummary repeated;
+  std::string damage;  ///< why the summary could not be read
+};
+
+Result<End> read_end(const Source& source, const ReaderLimits& limits) {
+  const auto tail = read_tail(source);
+  if (!tail) {
+    return tail.error();
   }
-  if (Status status = source.read(0, magic); !status) {
-    return status.error();
+  End end;
+  end.tail = *tail;
+  if (!end.tail) {
+    return end;
   }
-  if (magic != kMagic) {
-    return Error{ErrorCode::kParse, "no MCAP file: it does not begin with the magic bytes"};
+  auto summary = read_summary(source, *end.tail, limits);
+  if (summary) {
+    end.repeated = {std::move(*summary), end.tail->footer.summary_crc != 0};
+  } else if (summary.error().code == ErrorCode::kIo) {
+    return summary.error();
+  } else {
+    end.damage = summary.error().message;
   }
-  const auto place = place_record(source, magic.size(), source.size(), limits);
-  if (!place || place->opcode != Opcode::kHeader) {
-    return Error{ErrorCode::kParse, "the MCAP header is not there or cut short"};
-  }
-  Bytes content;
-  if (Status status = read_content(source, *place, content); !status) {
-    return status.error();
-  }
-  auto header = parse_header(content);
-  if (!header) {
-    return Error{ErrorCode::kParse, "the MCAP header is malformed"};
-  }
-  return std::move(*header);
+  return end;
 }
 
-/// Messages can be found by the summary alone.
-bool is_complete(const Summary& summary) {
-  return summary.statistics && (!summary.chunks.empty() || summary.statistics->message_count == 0);
+/// The scan missed messages that the statistics count, or the other way round.
+bool contradicts(const Summary& repeated, const DataSection& found) {
+  return repeated.statistics &&
+         repeated.statistics->message_count != found.summary.statistics->message_count;
+}
+
+std::string damage_of(const DataSection& found, const End& end) {
+  if (!found.data_end) {
+    return "the end is missing: " + found.stopped_by;
+  }
+  return end.tail ? end.damage : "the end is missing: no footer and magic bytes";
 }
 
 Result<Bytes> read_indexed(const Source& source, std::uint64_t offset, Opcode opcode,
@@ -48,7 +58,7 @@ Result<Bytes> read_indexed(const Source& source, std::uint64_t offset, Opcode op
     return place.error();
   }
   if (place->opcode != opcode) {
-    return Error{ErrorCode::kParse, "an index names a place where no such record is"};
+    return Error{ErrorCode::kParse, "an index points to another record"};
   }
   Bytes content;
   if (Status status = read_content(source, *place, content); !status) {
@@ -65,57 +75,40 @@ Reader& Reader::operator=(Reader&&) noexcept = default;
 Reader::~Reader() = default;
 
 Result<Reader> Reader::open(std::unique_ptr<Source> source, const ReaderLimits& limits) {
-  auto header = read_header(*source, limits);
-  if (!header) {
-    return header.error();
-  }
-  const auto tail = read_tail(*source);
-  if (!tail) {
-    return tail.error();
-  }
-  if (!*tail || (*tail)->footer.summary_start == 0) {
-    return scan(std::move(source), limits);
-  }
-  auto summary = read_summary(*source, **tail, limits);
-  if (!summary) {
-    return summary.error();
-  }
-  if (!is_complete(*summary)) {
-    return scan(std::move(source), limits);
-  }
-  auto impl = std::make_unique<Impl>();
-  impl->source = std::move(source);
-  impl->limits = limits;
-  impl->header = std::move(*header);
-  impl->summary = std::move(*summary);
-  for (const ChunkIndex& chunk : impl->summary.chunks) {
-    impl->spans.push_back({chunk.start_time, chunk.end_time, chunk.offset, chunk.length, true});
-  }
-  return Reader(std::move(impl));
+  return open(std::move(source), limits, ScanDepth::kIndexes);
 }
 
 Result<Reader> Reader::scan(std::unique_ptr<Source> source, const ReaderLimits& limits) {
-  // Definitions that a damaged chunk held may stand in the summary again.
-  Summary known;
-  if (const auto tail = read_tail(*source); tail && *tail && (*tail)->footer.summary_start != 0) {
-    if (auto summary = read_summary(*source, **tail, limits)) {
-      known = std::move(*summary);
-    }
+  return open(std::move(source), limits, ScanDepth::kContents);
+}
+
+Result<Reader> Reader::open(std::unique_ptr<Source> source, const ReaderLimits& limits,
+                            ScanDepth depth) {
+  const auto end = read_end(*source, limits);
+  if (!end) {
+    return end.error();
   }
-  auto found = walk_data_section(*source, limits, known);
+  auto found = scan_data_section(*source, limits, depth, end->repeated);
+  if (found && depth == ScanDepth::kIndexes && contradicts(end->repeated.summary, *found)) {
+    found = scan_data_section(*source, limits, ScanDepth::kContents, end->repeated);
+  }
   if (!found) {
     return found.error();
   }
   auto impl = std::make_unique<Impl>();
-  impl->damage = found->data_end ? "the file has no usable summary"
-                                 : "the file has no end: " + found->stopped_by;
+  impl->damage = damage_of(*found, *end);
+  impl->faults = std::move(found->faults);
+  if (contradicts(end->repeated.summary, *found)) {
+    impl->faults.push_back(
+        "the statistics count " + std::to_string(end->repeated.summary.statistics->message_count) +
+        " messages, the file has " + std::to_string(found->summary.statistics->message_count));
+  }
   impl->bytes_ignored = found->data_end ? 0 : source->size() - found->whole_bytes;
   impl->source = std::move(source);
   impl->limits = limits;
   impl->header = std::move(found->header);
   impl->summary = std::move(found->summary);
   impl->spans = std::move(found->spans);
-  impl->faults = std::move(found->faults);
   return Reader(std::move(impl));
 }
 
@@ -147,7 +140,7 @@ Result<Attachment> Reader::attachment(const AttachmentIndex& index) const {
   }
   auto attachment = parse_attachment(*content);
   if (!attachment) {
-    return Error{ErrorCode::kParse, "an attachment is malformed or its CRC does not fit"};
+    return Error{ErrorCode::kParse, "an attachment is malformed or its CRC does not match"};
   }
   return std::move(*attachment);
 }

@@ -1,60 +1,103 @@
+#include "furrow_recording/mcap_verify.hpp"
+
 #include <algorithm>
+#include <set>
 
 #include "data_section.hpp"
-#include "furrow_recording/mcap_tools.hpp"
+#include "record_source.hpp"
 #include "summary_section.hpp"
 
 namespace furrow::mcap {
 namespace {
 
-template <class Record, class Put>
-Bytes in_bytes(const Record& record, Put&& put_record) {
-  Bytes bytes;
-  ByteWriter out(bytes);
-  put_record(out, record);
-  return bytes;
-}
-
-/// Records are the same when their bytes are.
+/// True when both records have the same bytes.
 template <class Record>
 bool same(const Record& a, const Record& b) {
-  const auto put_record = [](ByteWriter& out, const Record& record) { put(out, record); };
-  return in_bytes(a, put_record) == in_bytes(b, put_record);
+  const auto in_bytes = [](const Record& record) {
+    Bytes bytes;
+    ByteWriter out(bytes);
+    put(out, record);
+    return bytes;
+  };
+  return in_bytes(a) == in_bytes(b);
 }
 
-template <class Record>
-bool same(const std::vector<Record>& a, const std::vector<Record>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Record& x, const Record& y) { return same(x, y); });
-}
-
+/// The summary may repeat some of the data section's definitions, and may define more: rosbag2 puts
+/// topics without messages there only.
 template <class Id, class Record>
-bool same(const std::map<Id, Record>& a, const std::map<Id, Record>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.first == y.first && same(x.second, y.second);
+bool agree(const std::map<Id, Record>& repeated, const std::map<Id, Record>& found) {
+  return std::ranges::all_of(repeated, [&found](const auto& entry) {
+    const auto at = found.find(entry.first);
+    return at == found.end() || same(at->second, entry.second);
   });
 }
 
-/// A summary need not hold everything, but what it holds must be so.
-void compare(const Summary& said, Summary found, std::uint64_t offset, Faults& faults) {
+template <class Index>
+bool same_indexes(std::vector<Index> a, const std::vector<Index>& b) {
+  std::ranges::sort(a, {}, &Index::offset);
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Index& x, const Index& y) { return same(x, y); });
+}
+
+/// The times of a chunk without messages mean nothing; writers put different values there.
+void clear_times_without_messages(std::vector<ChunkIndex>& chunks,
+                                  const std::set<std::uint64_t>& with_messages) {
+  for (ChunkIndex& chunk : chunks) {
+    if (!with_messages.contains(chunk.offset)) {
+      chunk.start_time = chunk.end_time = Time();
+    }
+  }
+}
+
+bool agree(Statistics repeated, Statistics found, const Summary& defined) {
+  // Writers count the definitions of the data section, or also those that only the summary has.
+  const auto between = [](std::uint64_t value, std::uint64_t low, std::uint64_t high) {
+    return value >= low && value <= std::max(low, high);
+  };
+  if (!between(repeated.schema_count, found.schema_count, defined.schemas.size()) ||
+      !between(repeated.channel_count, found.channel_count, defined.channels.size())) {
+    return false;
+  }
+  repeated.schema_count = found.schema_count;
+  repeated.channel_count = found.channel_count;
+  if (repeated.message_count == 0) {
+    repeated.start_time = found.start_time;
+    repeated.end_time = found.end_time;
+  }
+  std::erase_if(repeated.channel_message_counts,
+                [](const auto& entry) { return entry.second == 0; });
+  if (repeated.channel_message_counts.empty()) {
+    found.channel_message_counts.clear();
+  }
+  return same(repeated, found);
+}
+
+/// A summary need not hold everything, but what it holds must be right.
+void compare(Summary repeated, DataSection found, std::uint64_t offset, Faults& faults) {
   const auto check = [&](bool given, bool right, const char* what) {
     if (given && !right) {
-      faults.add(offset, std::string("the summary's ") + what + " are not those of the file");
+      faults.add(offset, std::string("the summary's ") + what + " do not match the file");
     }
   };
-  if (said.statistics && said.statistics->channel_message_counts.empty()) {
-    found.statistics->channel_message_counts.clear();
+  std::set<std::uint64_t> with_messages;
+  for (const Span& span : found.spans) {
+    with_messages.insert(span.offset);
   }
-  check(!said.schemas.empty(), same(said.schemas, found.schemas), "schemas");
-  check(!said.channels.empty(), same(said.channels, found.channels), "channels");
-  check(!said.chunks.empty(), same(said.chunks, found.chunks), "chunk indexes");
-  check(!said.attachments.empty(), same(said.attachments, found.attachments), "attachment indexes");
-  check(!said.metadata.empty(), same(said.metadata, found.metadata), "metadata indexes");
-  check(said.statistics.has_value(), said.statistics && same(*said.statistics, *found.statistics),
+  clear_times_without_messages(repeated.chunks, with_messages);
+  const Summary& data = found.summary;
+  check(true, agree(repeated.schemas, data.schemas), "schemas");
+  check(true, agree(repeated.channels, data.channels), "channels");
+  check(!repeated.chunks.empty(), same_indexes(repeated.chunks, data.chunks), "chunk indexes");
+  check(!repeated.attachments.empty(), same_indexes(repeated.attachments, data.attachments),
+        "attachment indexes");
+  check(!repeated.metadata.empty(), same_indexes(repeated.metadata, data.metadata),
+        "metadata indexes");
+  check(repeated.statistics.has_value(),
+        repeated.statistics && agree(*repeated.statistics, *data.statistics, repeated),
         "statistics");
 }
 
-/// Each SummaryOffset record must name a run of records of its opcode.
+/// Each SummaryOffset record must point to records of its opcode.
 Status check_offsets(const Source& source, const Tail& tail, const ReaderLimits& limits) {
   std::uint64_t at = tail.footer.summary_offset_start;
   while (at != 0 && at < tail.footer_offset) {
@@ -76,16 +119,38 @@ Status check_offsets(const Source& source, const Tail& tail, const ReaderLimits&
     while (inside && record < end) {
       const auto member = place_record(source, record, end, limits);
       if (!member || member->opcode != group) {
-        return Error{ErrorCode::kParse, "a summary offset names other records than it says"};
+        return Error{ErrorCode::kParse, "a summary offset points to records of another kind"};
       }
       record = member->end();
     }
     if (!inside || place->opcode != Opcode::kSummaryOffset) {
-      return Error{ErrorCode::kParse, "a summary offset names no place inside the summary"};
+      return Error{ErrorCode::kParse, "a summary offset points outside of the summary"};
     }
     at = place->end();
   }
   return {};
+}
+
+/// Compares summary and footer with what the data section holds.
+void check_end(const Source& source, const Tail& tail, const ReaderLimits& limits,
+               DataSection found, Faults& faults) {
+  const bool has_summary = tail.footer.summary_start != 0;
+  const std::uint64_t start = has_summary ? tail.footer.summary_start : tail.footer_offset;
+  if (start != found.whole_bytes) {
+    faults.add(tail.footer_offset, "the summary does not begin behind the data");
+  }
+  if (!has_summary) {
+    return;
+  }
+  auto summary = read_summary(source, tail, limits);
+  if (!summary) {
+    faults.add(start, summary.error().message);
+  } else {
+    compare(std::move(*summary), std::move(found), start, faults);
+  }
+  if (Status offsets = check_offsets(source, tail, limits); !offsets) {
+    faults.add(start, offsets.error().message);
+  }
 }
 
 }  // namespace
@@ -93,7 +158,7 @@ Status check_offsets(const Source& source, const Tail& tail, const ReaderLimits&
 Result<VerifyReport> verify(const Source& source, const ReaderLimits& limits) {
   VerifyReport report;
   report.bytes = source.size();
-  auto found = walk_data_section(source, limits);
+  auto found = scan_data_section(source, limits, ScanDepth::kContents);
   if (!found) {
     if (found.error().code == ErrorCode::kIo) {
       return found.error();
@@ -103,39 +168,20 @@ Result<VerifyReport> verify(const Source& source, const ReaderLimits& limits) {
   }
   report.messages = found->summary.statistics->message_count;
   report.chunks = found->summary.statistics->chunk_count;
-  Faults faults;
-  if (!found->data_end) {
-    faults.add(found->whole_bytes, "the file has no end: " + found->stopped_by);
-  }
   const auto tail = read_tail(source);
   if (!tail) {
     return tail.error();
   }
   report.closed = found->data_end && tail->has_value();
-  if (found->data_end && !*tail) {
-    faults.add(found->whole_bytes, "the footer or the magic bytes at the end are not there");
-  }
-  if (report.closed) {
-    const Tail& end = **tail;
-    const std::uint64_t start =
-        end.footer.summary_start == 0 ? end.footer_offset : end.footer.summary_start;
-    if (start != found->whole_bytes) {
-      faults.add(end.footer_offset, "the summary does not begin behind the data");
-    }
-    if (end.footer.summary_start != 0) {
-      const auto summary = read_summary(source, end, limits);
-      const Status offsets = check_offsets(source, end, limits);
-      if (!summary) {
-        faults.add(start, summary.error().message);
-      } else {
-        compare(*summary, found->summary, start, faults);
-      }
-      if (!offsets) {
-        faults.add(start, offsets.error().message);
-      }
-    }
-  }
   report.faults = found->faults;
+  Faults faults;
+  if (!found->data_end) {
+    faults.add(found->whole_bytes, "the end is missing: " + found->stopped_by);
+  } else if (!*tail) {
+    faults.add(found->whole_bytes, "the footer or the magic bytes at the end are missing");
+  } else {
+    check_end(source, **tail, limits, std::move(*found), faults);
+  }
   report.faults.insert(report.faults.end(), faults.list().begin(), faults.list().end());
   report.faults.resize(std::min<std::size_t>(report.faults.size(), 100));
   return report;

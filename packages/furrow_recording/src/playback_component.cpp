@@ -36,7 +36,7 @@ struct Parameters {
   double duration_s = 0.0;
 
   void visit(ParameterVisitor& v) {
-    v.visit({.name = "files", .description = "MCAP files of one recording"}, files);
+    v.visit({.name = "files", .description = "files or rosbag2 folders of one recording"}, files);
     v.visit({.name = "include", .description = "topics to play, as patterns with * and ?"},
             include);
     v.visit({.name = "exclude", .description = "topics to leave out"}, exclude);
@@ -82,14 +82,14 @@ Player open(const Parameters& parameters) {
   return std::move(player).value();
 }
 
-/// Stands in for the sensors. Time zero of the graph is that of a recording in simulated time; else
-/// stamps are moved so that the first message comes a second after the start.
+/// Replaces the sensors. A recording in simulated time keeps its times. Other stamps are moved: the
+/// first message comes a second after the start.
 class Playback final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
     d.doc(
-         "Plays camera, odometry, IMU, GNSS and, of simulated runs, the truth from a recording, in "
-         "place of robot and camera.")
+         "Plays camera, odometry, IMU and GNSS of a recording in place of robot and camera, and "
+         "the ground truth of simulated runs.")
         .parameters<Parameters>();
     PlayedTopics::for_each([&d]<class T>() { d.output<T>(); });
   }
@@ -106,8 +106,9 @@ class Playback final : public graph::Component {
     shift_ = as_recorded ? Duration() : context.now() + kLead - begin;
     publishers_.resize(player_.topics().size());
     PlayedTopics::for_each([this]<class T>() { connect<T>(); });
+    report_damage();
     fetch();
-    // What was there before the first step, such as the field.
+    // Messages from before the first step, such as the field.
     if (as_recorded) publish_until(context.now());
     context.every(kStep, [this](Time now) { step(now); });
   }
@@ -133,6 +134,20 @@ class Playback final : public graph::Component {
         output.publish(std::shared_ptr<const typename T::Message>(std::move(message)));
         return Status();
       };
+    }
+  }
+
+  void report_damage() {
+    const RecordingInfo& info = player_.recording();
+    for (const UnplayableTopic& topic : player_.unplayable()) {
+      context_.count("topics_not_played");
+      context_.health(graph::HealthLevel::kWarn, topic.name + " is not played: " + topic.reason);
+    }
+    if (!info.whole()) {
+      context_.count("damaged_parts");
+      context_.health(graph::HealthLevel::kWarn,
+                      "the recording is not whole: " +
+                          (info.damage.empty() ? info.faults.front() : info.damage));
     }
   }
 
@@ -201,7 +216,7 @@ class Playback final : public graph::Component {
     last_report_ = now;
   }
 
-  /// The next message that is a port's. Damaged parts of the file are left out, and counted.
+  /// Reads the next message of a port. Damaged parts of the file are left out and counted.
   void fetch() {
     while (true) {
       auto next = player_.next_message();

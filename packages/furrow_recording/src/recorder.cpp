@@ -1,49 +1,27 @@
 #include "furrow_recording/recorder.hpp"
 
-#include <algorithm>
-#include <deque>
-#include <limits>
 #include <system_error>
 #include <utility>
 
-#include "furrow_recording/mcap_writer.hpp"
 #include "furrow_recording/topic_filter.hpp"
+#include "pre_trigger_window.hpp"
+#include "recording_file.hpp"
+#include "units.hpp"
 
 namespace furrow::recording {
 namespace {
 
-constexpr double kBytesPerMb = 1e6;
-/// The disk's space is asked for after so many bytes.
+/// The free space of the disk is checked after so many bytes.
 constexpr std::uint64_t kSpaceCheckBytes = 1'000'000;
-/// Latched messages of one topic that are kept for a late beginning.
-constexpr std::size_t kMaxLatched = 100;
-
-struct Waiting {
-  std::size_t topic = 0;
-  Time log_time;
-  Time publish_time;
-  Payload payload;
-};
 
 struct TopicState {
   TopicDescription description;
-  bool latched = false;
-  std::size_t depth = 1;
-  std::optional<mcap::ChannelId> channel;  ///< in the open file
   std::uint32_t sequence = 0;
-  std::uint64_t handed_over = 0;  ///< to the open file
-  std::uint64_t written = 0;      ///< to the files before
+  std::uint64_t in_file = 0;  ///< accepted by the open file
+  std::uint64_t written = 0;  ///< to the files before
   std::uint64_t bytes = 0;
   std::uint64_t dropped = 0;
-  std::deque<Waiting> kept;  ///< latched, while nothing is written
 };
-
-mcap::Compression compression_of(const std::string& name) {
-  if (name == "none") {
-    return mcap::Compression::kNone;
-  }
-  return name == "lz4" ? mcap::Compression::kLz4 : mcap::Compression::kZstd;
-}
 
 }  // namespace
 
@@ -55,6 +33,8 @@ class Recorder::Impl {
         filter_{parameters.include, parameters.exclude},
         stem_(std::move(stem)),
         environment_(std::move(environment)),
+        window_(Duration::seconds(parameters.pre_trigger_s),
+                static_cast<std::uint64_t>(parameters.pre_trigger_mb * kBytesPerMb)),
         state_(parameters.pre_trigger_s > 0.0 ? RecorderState::kArmed : RecorderState::kRecording) {
     std::error_code failure;
     if (stem_.has_parent_path()) {
@@ -67,13 +47,12 @@ class Recorder::Impl {
     if (std::filesystem::exists(file_path(0), failure)) {
       throw ConfigError(file_path(0).string() + " exists; recordings are not overwritten");
     }
-    if (Status status = check_space(); !status) {
-      throw ConfigError(status.error().message);
+    Status status = check_space();
+    if (status && state_ == RecorderState::kRecording) {
+      status = open_file();
     }
-    if (state_ == RecorderState::kRecording) {
-      if (Status status = open_file(); !status) {
-        throw ConfigError(status.error().message);
-      }
+    if (!status) {
+      throw ConfigError(status.error().message);
     }
   }
 
@@ -86,18 +65,13 @@ class Recorder::Impl {
   std::size_t add_topic(const TopicDescription& description) {
     for (std::size_t i = 0; i < topics_.size(); ++i) {
       const TopicDescription& known = topics_[i].description;
-      if (known.name == description.name && known.type_name == description.type_name) {
+      if (known.name == description.name && known.type_name == description.type_name &&
+          known.publisher == description.publisher) {
         return i;
       }
     }
-    TopicState topic;
-    topic.description = description;
-    topic.latched = description.latched();
-    for (const msgs::Qos& qos : description.offered_qos) {
-      topic.depth = std::max(topic.depth, static_cast<std::size_t>(std::max(qos.depth, 1)));
-    }
-    topic.depth = std::min(topic.depth, kMaxLatched);
-    topics_.push_back(std::move(topic));
+    topics_.push_back({description});
+    latched_.add_channel(topics_.size() - 1, description);
     return topics_.size() - 1;
   }
 
@@ -106,10 +80,13 @@ class Recorder::Impl {
       ++topics_.at(topic).dropped;
       return Error{ErrorCode::kInvalidArgument, "a message without content"};
     }
-    Waiting message{topic, log_time, publish_time, std::move(payload)};
+    KeptMessage message{topic, 0, log_time, publish_time, std::move(payload)};
     switch (state_) {
       case RecorderState::kArmed:
-        arm(std::move(message));
+        window_.add(std::move(message), [this](KeptMessage expired) {
+          ++expired_;
+          keep(std::move(expired));
+        });
         return {};
       case RecorderState::kPaused:
         ++paused_;
@@ -125,7 +102,7 @@ class Recorder::Impl {
       ++topics_.at(topic).dropped;
       return status;
     }
-    return put(message);
+    return put(std::move(message));
   }
 
   void count_dropped(std::size_t topic, std::uint64_t messages) {
@@ -136,10 +113,11 @@ class Recorder::Impl {
     if (state_ != RecorderState::kRecording) {
       return {};
     }
-    if (Status status = check_space(); !status) {
-      return fail(status.error());
+    Status status = check_space();
+    if (status) {
+      status = file_->flush_if_due(now);
     }
-    return flush_if_due(now);
+    return status ? status : fail(status.error());
   }
 
   Status trigger() {
@@ -150,21 +128,19 @@ class Recorder::Impl {
     if (Status status = open_file(); !status) {
       return fail(status.error());
     }
-    if (!ring_.empty()) {
-      if (Status status = put_kept(ring_.front().log_time); !status) {
+    kept_waits_ = true;
+    if (!window_.empty()) {
+      if (Status status = put_kept(window_.begin()); !status) {
         return status;
       }
-    } else {
-      kept_waits_ = true;
     }
     Status first;
-    while (!ring_.empty() && state_ == RecorderState::kRecording) {
-      const Waiting message = take_from_ring();
-      if (Status status = put(message); !status && first) {
+    while (!window_.empty() && state_ == RecorderState::kRecording) {
+      if (Status status = put(window_.take_oldest()); !status && first) {
         first = status;
       }
     }
-    drop_ring();
+    drop_window();
     return first;
   }
 
@@ -184,7 +160,7 @@ class Recorder::Impl {
     if (state_ == RecorderState::kStopped) {
       return {};
     }
-    drop_ring();
+    drop_window();
     state_ = RecorderState::kStopped;
     Status status = close_file();
     if (!status) {
@@ -200,10 +176,9 @@ class Recorder::Impl {
     status.files = files_;
     status.paused = paused_;
     status.expired = expired_;
-    status.bytes =
-        closed_bytes_ + (writer_ ? writer_->bytes_written() + writer_->bytes_pending() : 0);
+    status.bytes = closed_bytes_ + (file_ ? file_->bytes() : 0);
     for (const TopicState& topic : topics_) {
-      const std::uint64_t messages = topic.written + topic.handed_over;
+      const std::uint64_t messages = topic.written + topic.in_file;
       status.topics.push_back({topic.description.name, messages, topic.bytes, topic.dropped});
       status.messages += messages;
       status.dropped += topic.dropped;
@@ -219,7 +194,7 @@ class Recorder::Impl {
   }
 
   Status check_space() {
-    space_checked_at_ = writer_ ? writer_->bytes_written() : 0;
+    space_checked_at_ = file_ ? file_->bytes_written() : 0;
     const auto free = environment_.free_bytes(stem_);
     if (!free) {
       return free.error();
@@ -237,44 +212,30 @@ class Recorder::Impl {
     if (!sink) {
       return sink.error();
     }
-    mcap::WriterOptions options;
-    options.compression = compression_of(parameters_.compression);
-    options.chunk_bytes = static_cast<std::size_t>(parameters_.chunk_kb) * 1000;
-    auto writer = mcap::Writer::open(std::move(*sink), options);
-    if (!writer) {
-      return writer.error();
+    auto file = RecordingFile::open(std::move(*sink), parameters_);
+    if (!file) {
+      return file.error();
     }
-    writer_ = std::move(*writer);
+    file_ = std::move(*file);
     files_.push_back(path);
-    file_start_.reset();
-    pending_since_.reset();
     space_checked_at_ = 0;
-    for (TopicState& topic : topics_) {
-      topic.channel.reset();
-    }
     return {};
   }
 
   Status close_file() {
-    if (!writer_) {
+    if (!file_) {
       return {};
     }
-    Status status = writer_->close();
-    closed_bytes_ += writer_->bytes_written();
-    // A chunk that could not be written takes messages with it.
-    const mcap::Statistics statistics = writer_->statistics();
-    for (TopicState& topic : topics_) {
-      std::uint64_t written = 0;
-      if (topic.channel) {
-        const auto at = statistics.channel_message_counts.find(*topic.channel);
-        written = at == statistics.channel_message_counts.end() ? 0 : at->second;
-      }
+    Status status = file_->close();
+    closed_bytes_ += file_->bytes_written();
+    for (std::size_t i = 0; i < topics_.size(); ++i) {
+      TopicState& topic = topics_[i];
+      const std::uint64_t written = file_->messages(i);
       topic.written += written;
-      topic.dropped += topic.handed_over - written;
-      topic.handed_over = 0;
-      topic.channel.reset();
+      topic.dropped += topic.in_file - written;
+      topic.in_file = 0;
     }
-    writer_.reset();
+    file_.reset();
     return status;
   }
 
@@ -285,74 +246,29 @@ class Recorder::Impl {
     return error;
   }
 
-  Status flush_if_due(Time now) {
-    if (!pending_since_ || now - *pending_since_ < Duration::seconds(parameters_.flush_s)) {
-      return {};
-    }
-    pending_since_.reset();
-    if (Status status = writer_->flush(); !status) {
-      return fail(status.error());
-    }
-    return {};
-  }
-
-  Status split_if_due(Time log_time) {
-    const std::uint64_t bytes = writer_->bytes_written() + writer_->bytes_pending();
-    const bool by_size = parameters_.split_mb > 0.0 &&
-                         static_cast<double>(bytes) >= parameters_.split_mb * kBytesPerMb;
-    const bool by_time = parameters_.split_s > 0.0 && file_start_ &&
-                         log_time - *file_start_ >= Duration::seconds(parameters_.split_s);
-    if (!file_start_ || (!by_size && !by_time)) {
-      return {};
-    }
-    if (Status status = close_file(); !status) {
-      return status;
-    }
-    return open_file();
-  }
-
-  Status prepare(TopicState& topic, Time log_time) {
-    if (Status status = split_if_due(log_time); !status) {
-      return status;
-    }
-    if (writer_->bytes_written() - space_checked_at_ >= kSpaceCheckBytes) {
-      if (Status status = check_space(); !status) {
+  /// Splits and checks the disk before a message is written.
+  Status prepare(Time log_time) {
+    if (file_->is_full(log_time)) {
+      Status status = close_file();
+      if (status) {
+        status = open_file();
+      }
+      if (!status) {
         return status;
       }
     }
-    if (topic.channel) {
-      return {};
-    }
-    const TopicDescription& description = topic.description;
-    mcap::SchemaId schema = 0;
-    if (!description.type_name.empty()) {
-      const auto added = writer_->add_schema(schema_name(description), description.schema_encoding,
-                                             description.schema_text);
-      if (!added) {
-        return added.error();
-      }
-      schema = *added;
-    }
-    const auto channel =
-        writer_->add_channel({0, schema, topic_in_file(description.name),
-                              description.message_encoding, channel_metadata(description)});
-    if (!channel) {
-      return channel.error();
-    }
-    topic.channel = *channel;
-    return {};
+    return file_->bytes_written() - space_checked_at_ >= kSpaceCheckBytes ? check_space()
+                                                                          : Status();
   }
 
-  /// Into the open file.
-  Status put(const Waiting& message) {
-    TopicState& topic = topics_.at(message.topic);
-    if (Status status = prepare(topic, message.log_time); !status) {
+  Status put(KeptMessage message) {
+    TopicState& topic = topics_.at(message.channel);
+    if (Status status = prepare(message.log_time); !status) {
       ++topic.dropped;
       return fail(status.error());
     }
-    Status status = writer_->write(
-        {*topic.channel, topic.sequence, message.log_time, message.publish_time, *message.payload});
-    if (!status) {
+    message.sequence = topic.sequence;
+    if (Status status = file_->write(topic.description, message); !status) {
       ++topic.dropped;
       if (status.error().code == ErrorCode::kIo) {
         return fail(status.error());
@@ -361,79 +277,45 @@ class Recorder::Impl {
       return status;
     }
     ++topic.sequence;
-    ++topic.handed_over;
+    ++topic.in_file;
     topic.bytes += message.payload->size();
-    if (!file_start_) {
-      file_start_ = message.log_time;
+    if (Status status = file_->flush_if_due(message.log_time); !status) {
+      return fail(status.error());
     }
-    if (writer_->bytes_pending() == 0) {
-      pending_since_.reset();
-    } else if (!pending_since_) {
-      pending_since_ = message.log_time;
-    }
-    return flush_if_due(message.log_time);
+    return {};
   }
 
-  void arm(Waiting message) {
-    const Time oldest = message.log_time - Duration::seconds(parameters_.pre_trigger_s);
-    ring_bytes_ += message.payload->size();
-    ring_.push_back(std::move(message));
-    while (!ring_.empty() &&
-           (ring_.front().log_time < oldest ||
-            static_cast<double>(ring_bytes_) > parameters_.pre_trigger_mb * kBytesPerMb)) {
-      Waiting expired = take_from_ring();
-      ++expired_;
-      keep(std::move(expired));
-    }
+  void drop_window() {
+    expired_ += window_.size();
+    window_.clear();
   }
 
-  Waiting take_from_ring() {
-    Waiting message = std::move(ring_.front());
-    ring_.pop_front();
-    ring_bytes_ -= message.payload->size();
-    return message;
-  }
-
-  void drop_ring() {
-    expired_ += ring_.size();
-    ring_.clear();
-    ring_bytes_ = 0;
-  }
-
-  void keep(Waiting message) {
-    TopicState& topic = topics_.at(message.topic);
-    if (!topic.latched) {
-      return;
-    }
-    topic.kept.push_back(std::move(message));
-    if (topic.kept.size() > topic.depth) {
-      topic.kept.pop_front();
-    }
+  void keep(KeptMessage message) {
     kept_waits_ = kept_waits_ || state_ == RecorderState::kArmed;
+    latched_.add(std::move(message));
   }
 
-  /// What still held when recording began or went on; with that time as log time.
+  /// Writes the latched messages that hold when recording begins or resumes, with that time as
+  /// their log time.
   Status put_kept(Time log_time) {
     if (!kept_waits_) {
       return {};
     }
     kept_waits_ = false;
-    for (TopicState& topic : topics_) {
-      std::deque<Waiting> kept = std::exchange(topic.kept, {});
-      for (Waiting& message : kept) {
-        message.log_time = log_time;
-        if (Status status = put(message); !status && state_ == RecorderState::kStopped) {
-          return status;
-        }
+    for (KeptMessage& message : latched_.take()) {
+      message.log_time = log_time;
+      if (Status status = put(std::move(message)); !status && state_ == RecorderState::kStopped) {
+        return status;
       }
     }
     return {};
   }
 
-  RecorderParameters parameters_;
+  const RecorderParameters parameters_;
   TopicFilter filter_;
   std::filesystem::path stem_;
   RecorderEnvironment environment_;
+  PreTriggerWindow window_;
   RecorderState state_;
   std::string fault_;
   std::vector<TopicState> topics_;
@@ -441,15 +323,10 @@ class Recorder::Impl {
   std::uint64_t closed_bytes_ = 0;
   std::uint64_t paused_ = 0;
   std::uint64_t expired_ = 0;
-
-  std::unique_ptr<mcap::Writer> writer_;
-  std::optional<Time> file_start_;
-  std::optional<Time> pending_since_;
+  std::unique_ptr<RecordingFile> file_;
   std::uint64_t space_checked_at_ = 0;
-
-  std::deque<Waiting> ring_;
-  std::uint64_t ring_bytes_ = 0;
-  bool kept_waits_ = false;
+  LatchedMessages latched_;  ///< while nothing is written
+  bool kept_waits_ = false;  ///< the next message is preceded by latched ones
 };
 
 Recorder::Recorder(const RecorderParameters& parameters, std::filesystem::path stem,

@@ -33,8 +33,8 @@ std::string stem_of(const std::string& file) {
   return path.extension() == ".mcap" ? path.replace_extension().string() : file;
 }
 
-/// A recorder waits for a thread of the pool as all others do, which may compute for a second; what
-/// comes meanwhile must not be lost, also of topics of which other readers want only the newest.
+/// The recorder waits for a worker, which may compute for a second. No message that arrives
+/// meanwhile may be lost, even where other readers want only the newest.
 int mailbox_depth(const msgs::Qos& qos) {
   constexpr int kLeast = 64;
   constexpr int kOfOthers = 20;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -26,9 +27,11 @@ struct QueuedMessage {
   const msgs::MessageType* type = nullptr;
   std::size_t bytes = 0;
 };
-/// What else is done to the recorder, in the order of the calls.
+/// A call of the recorder, in the order of the callers.
 using Command = std::function<void(Recorder&)>;
 using Item = std::variant<QueuedMessage, Command>;
+/// Of a topic: name, type and publisher.
+using Name = std::tuple<std::string, std::string, std::string>;
 
 Payload serialize(const QueuedMessage& queued) {
   auto bytes = std::make_shared<std::vector<std::byte>>(queued.bytes);
@@ -67,13 +70,12 @@ class RecorderThread::Impl {
 
   std::size_t add_topic(const TopicDescription& topic) {
     const std::lock_guard lock(mutex_);
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      if (names_[i] == std::pair(topic.name, topic.type_name)) {
-        return i;
-      }
+    const Name name(topic.name, topic.type_name, topic.publisher);
+    if (const auto known = std::ranges::find(names_, name); known != names_.end()) {
+      return static_cast<std::size_t>(known - names_.begin());
     }
     // The recorder numbers in the same order.
-    names_.emplace_back(topic.name, topic.type_name);
+    names_.push_back(name);
     dropped_.push_back(0);
     queue_.emplace_back(Command([topic](Recorder& recorder) { (void)recorder.add_topic(topic); }));
     ++commands_;
@@ -98,7 +100,7 @@ class RecorderThread::Impl {
   void record_all(QueuedMessage message) {
     {
       std::unique_lock lock(mutex_);
-      // A message larger than the whole queue goes in when it is empty.
+      // A message larger than the whole queue enters when the queue is empty.
       room_.wait(lock, [&] {
         return queued_messages_ == 0 ||
                (queued_messages_ < max_messages_ && queued_bytes_ + message.bytes <= max_bytes_);
@@ -122,7 +124,7 @@ class RecorderThread::Impl {
   [[nodiscard]] RecorderStatus status() const {
     const std::lock_guard lock(mutex_);
     RecorderStatus status = status_;
-    // What the recorder does not know yet.
+    // The recorder does not know of these yet.
     for (std::size_t i = 0; i < dropped_.size() && i < status.topics.size(); ++i) {
       status.topics[i].dropped += dropped_[i];
       status.dropped += dropped_[i];
@@ -153,14 +155,14 @@ class RecorderThread::Impl {
         }
       }
       if (idle) {
-        // On the messages' clock, which goes on while none come.
+        // On the messages' clock, which advances while no message arrives.
         const auto since = std::chrono::nanoseconds(Clock::now() - newest_at);
         (void)recorder_.tick(newest + Duration::nanoseconds(since.count()));
       }
       lock.lock();
       std::uint64_t commands = commands_;
       for (const Item& item : queue_) {
-        // Commands that came meanwhile are still to be done.
+        // Commands that arrived meanwhile are still waiting.
         commands -= std::holds_alternative<Command>(item) ? 1 : 0;
       }
       report_dropped();
@@ -193,7 +195,7 @@ class RecorderThread::Impl {
 
   const std::uint64_t max_bytes_;
   const std::size_t max_messages_;
-  Recorder recorder_;  // of the thread
+  Recorder recorder_;  ///< used by the thread only
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
@@ -202,13 +204,13 @@ class RecorderThread::Impl {
   std::deque<Item> queue_;
   std::size_t queued_messages_ = 0;
   std::uint64_t queued_bytes_ = 0;
-  std::vector<std::pair<std::string, std::string>> names_;
+  std::vector<Name> names_;
   std::vector<std::uint64_t> dropped_;
   std::uint64_t commands_ = 0;
   std::uint64_t commands_done_ = 0;
   RecorderStatus status_;
   bool ending_ = false;
-  std::thread thread_;  // last: it uses all others
+  std::thread thread_;  ///< last, because it uses all other members
 };
 
 RecorderThread::RecorderThread(const RecorderParameters& parameters, std::filesystem::path stem,

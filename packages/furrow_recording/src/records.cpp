@@ -53,11 +53,6 @@ void put_head(ByteWriter& out, const Message& message) {
   out.time(message.publish_time);
 }
 
-void put(ByteWriter& out, const Message& message) {
-  put_head(out, message);
-  out.raw(message.data);
-}
-
 void put(ByteWriter& out, const MessageIndex& index) {
   const auto at = begin(out, Opcode::kMessageIndex);
   out.number(index.channel_id);
@@ -84,17 +79,14 @@ void put(ByteWriter& out, const ChunkIndex& index) {
 }
 
 void put(ByteWriter& out, const Attachment& attachment) {
-  Bytes content;
-  ByteWriter fields(content);
-  fields.time(attachment.log_time);
-  fields.time(attachment.create_time);
-  fields.string(attachment.name);
-  fields.string(attachment.media_type);
-  fields.number(static_cast<std::uint64_t>(attachment.data.size()));
-  fields.raw(attachment.data);
   const auto at = begin(out, Opcode::kAttachment);
-  out.raw(content);
-  out.number(crc32(content));
+  out.time(attachment.log_time);
+  out.time(attachment.create_time);
+  out.string(attachment.name);
+  out.string(attachment.media_type);
+  out.number(static_cast<std::uint64_t>(attachment.data.size()));
+  out.raw(attachment.data);
+  out.number(crc32(out.content_of(at)));
   out.end_record(at);
 }
 
@@ -188,20 +180,20 @@ std::optional<Message> parse_message(ByteView content) {
   message.channel_id = in.number<ChannelId>();
   message.sequence = in.number<std::uint32_t>();
   message.log_time = in.time();
-  message.publish_time = in.time();
+  message.publish_time = in.described_time();
   message.data = in.rest();
   return checked(in, message);
 }
 
-std::optional<ChunkRecord> parse_chunk(ByteView content) {
+std::optional<ChunkHead> parse_chunk_head(ByteView content) {
   ByteReader in(content);
-  ChunkRecord chunk;
-  chunk.start_time = in.time();
-  chunk.end_time = in.time();
+  ChunkHead chunk;
+  chunk.start_time = in.described_time();
+  chunk.end_time = in.described_time();
   chunk.uncompressed_size = in.number<std::uint64_t>();
   chunk.uncompressed_crc = in.number<std::uint32_t>();
   chunk.compression = in.string();
-  chunk.records = in.raw(in.number<std::uint64_t>());
+  chunk.records_bytes = in.number<std::uint64_t>();
   return checked(in, std::move(chunk));
 }
 
@@ -220,8 +212,8 @@ std::optional<MessageIndex> parse_message_index(ByteView content) {
 std::optional<ChunkIndex> parse_chunk_index(ByteView content) {
   ByteReader in(content);
   ChunkIndex index;
-  index.start_time = in.time();
-  index.end_time = in.time();
+  index.start_time = in.described_time();
+  index.end_time = in.described_time();
   index.offset = in.number<std::uint64_t>();
   index.length = in.number<std::uint64_t>();
   index.message_index_offsets = in.number_map();
@@ -232,21 +224,32 @@ std::optional<ChunkIndex> parse_chunk_index(ByteView content) {
   return checked(in, std::move(index));
 }
 
-std::optional<Attachment> parse_attachment(ByteView content) {
+std::optional<AttachmentHead> parse_attachment_head(ByteView content) {
   ByteReader in(content);
-  Attachment attachment;
-  attachment.log_time = in.time();
-  attachment.create_time = in.time();
-  attachment.name = in.string();
-  attachment.media_type = in.string();
-  const ByteView data = in.raw(in.number<std::uint64_t>());
+  AttachmentHead head;
+  head.log_time = in.described_time();
+  head.create_time = in.described_time();
+  head.name = in.string();
+  head.media_type = in.string();
+  head.data_bytes = in.number<std::uint64_t>();
+  head.data_offset = content.size() - in.left();
+  return checked(in, std::move(head));
+}
+
+std::optional<Attachment> parse_attachment(ByteView content) {
+  const auto head = parse_attachment_head(content);
+  if (!head) {
+    return std::nullopt;
+  }
+  ByteReader in(content.subspan(head->data_offset));
+  const ByteView data = in.raw(head->data_bytes);
   const std::size_t checked_bytes = content.size() - in.left();
   const auto crc = in.number<std::uint32_t>();
   if (!in.ok() || (crc != 0 && crc != crc32(content.first(checked_bytes)))) {
     return std::nullopt;
   }
-  attachment.data.assign(data.begin(), data.end());
-  return attachment;
+  return Attachment{
+      head->log_time, head->create_time, head->name, head->media_type, {data.begin(), data.end()}};
 }
 
 std::optional<AttachmentIndex> parse_attachment_index(ByteView content) {
@@ -254,8 +257,8 @@ std::optional<AttachmentIndex> parse_attachment_index(ByteView content) {
   AttachmentIndex index;
   index.offset = in.number<std::uint64_t>();
   index.length = in.number<std::uint64_t>();
-  index.log_time = in.time();
-  index.create_time = in.time();
+  index.log_time = in.described_time();
+  index.create_time = in.described_time();
   index.data_size = in.number<std::uint64_t>();
   index.name = in.string();
   index.media_type = in.string();
@@ -271,8 +274,8 @@ std::optional<Statistics> parse_statistics(ByteView content) {
   statistics.attachment_count = in.number<std::uint32_t>();
   statistics.metadata_count = in.number<std::uint32_t>();
   statistics.chunk_count = in.number<std::uint32_t>();
-  statistics.start_time = in.time();
-  statistics.end_time = in.time();
+  statistics.start_time = in.described_time();
+  statistics.end_time = in.described_time();
   statistics.channel_message_counts = in.number_map();
   return checked(in, std::move(statistics));
 }

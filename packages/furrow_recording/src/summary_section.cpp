@@ -1,6 +1,8 @@
 #include "summary_section.hpp"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "crc32.hpp"
 
@@ -74,20 +76,23 @@ Result<Summary> read_summary(const Source& source, const Tail& tail, const Reade
   const std::uint64_t start = tail.footer.summary_start;
   const std::uint64_t offsets = tail.footer.summary_offset_start;
   const std::uint64_t end = tail.footer_offset;
+  if (start == 0) {
+    return Summary();
+  }
   if (start < kMagic.size() || start > end ||
       (offsets != 0 && (offsets < start || offsets > end))) {
-    return Error{ErrorCode::kParse, "the footer names no place inside the file"};
+    return Error{ErrorCode::kParse, "the footer points outside of the file"};
   }
   if (end - start > limits.record_bytes) {
     return Error{ErrorCode::kOutOfRange, "the summary is larger than allowed"};
   }
-  // Up to and with the footer's fields but its CRC.
+  // The CRC covers the summary and the footer up to the CRC field.
   Bytes bytes(static_cast<std::size_t>(end - start) + kRecordHeaderBytes + 16);
   if (Status status = source.read(start, bytes); !status) {
     return status.error();
   }
   if (tail.footer.summary_crc != 0 && tail.footer.summary_crc != crc32(bytes)) {
-    return Error{ErrorCode::kParse, "the CRC of the summary does not fit"};
+    return Error{ErrorCode::kParse, "the CRC of the summary does not match"};
   }
   Summary summary;
   const auto records = ByteView(bytes).first(static_cast<std::size_t>(end - start));
@@ -102,6 +107,58 @@ Result<Summary> read_summary(const Source& source, const Tail& tail, const Reade
     return Error{ErrorCode::kParse, "the summary is malformed"};
   }
   return summary;
+}
+
+Bytes put_end_of_file(const Summary& summary, std::uint64_t position, std::uint32_t data_crc) {
+  Bytes bytes;
+  ByteWriter out(bytes);
+  put_data_end(out, data_crc);
+  const std::size_t summary_at = bytes.size();
+  struct Group {
+    Opcode opcode;
+    std::size_t at;
+    std::size_t length;
+  };
+  std::vector<Group> groups;
+  const auto end_group = [&bytes, &groups](Opcode opcode, std::size_t at) {
+    if (bytes.size() > at) {
+      groups.push_back({opcode, at, bytes.size() - at});
+    }
+  };
+  const auto put_map = [&](Opcode opcode, const auto& records) {
+    const std::size_t at = bytes.size();
+    for (const auto& [id, record] : records) {
+      put(out, record);
+    }
+    end_group(opcode, at);
+  };
+  const auto put_list = [&](Opcode opcode, const auto& records) {
+    const std::size_t at = bytes.size();
+    for (const auto& record : records) {
+      put(out, record);
+    }
+    end_group(opcode, at);
+  };
+  put_map(Opcode::kSchema, summary.schemas);
+  put_map(Opcode::kChannel, summary.channels);
+  put_list(Opcode::kStatistics, std::array{*summary.statistics});
+  put_list(Opcode::kChunkIndex, summary.chunks);
+  put_list(Opcode::kAttachmentIndex, summary.attachments);
+  put_list(Opcode::kMetadataIndex, summary.metadata);
+  const std::size_t offsets_at = bytes.size();
+  for (const Group& group : groups) {
+    put_summary_offset(out, group.opcode, position + group.at, group.length);
+  }
+  const auto footer_at = out.begin_record(static_cast<std::uint8_t>(Opcode::kFooter));
+  out.number(static_cast<std::uint64_t>(position + summary_at));
+  out.number(static_cast<std::uint64_t>(position + offsets_at));
+  // The CRC covers the record's length too, so that a value must be in its place for that.
+  out.number(std::uint32_t{0});
+  out.end_record(footer_at);
+  bytes.resize(bytes.size() - sizeof(std::uint32_t));
+  out.number(crc32(ByteView(bytes).subspan(summary_at)));
+  out.raw(kMagic);
+  return bytes;
 }
 
 }  // namespace furrow::mcap

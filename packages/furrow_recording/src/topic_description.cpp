@@ -8,6 +8,7 @@
 #include "furrow_msgs/message_types.hpp"
 #include "furrow_msgs/type_names.hpp"
 #include "ros2msg.hpp"
+#include "units.hpp"
 
 namespace furrow::recording {
 namespace {
@@ -15,13 +16,14 @@ namespace {
 constexpr std::size_t kMaxQosText = 1u << 16;
 constexpr std::string_view kRosScope = "/msg/";
 constexpr std::string_view kIdlScope = "::msg::";
+constexpr std::string_view kStaticTransforms = "tf_static";
+constexpr char kPublisher[] = "publisher";
 
 // The numbers of rmw's enumerations (rmw/types.h).
 constexpr int kReliable = 1;
 constexpr int kBestEffort = 2;
 constexpr int kTransientLocal = 1;
 constexpr int kVolatile = 2;
-constexpr std::int64_t kNsPerS = 1'000'000'000;
 
 std::string duration_to_yaml(std::string_view key, Duration duration) {
   const std::int64_t ns =
@@ -36,7 +38,7 @@ Duration duration_from_yaml(const YAML::Node& node) {
   }
   const auto sec = node["sec"].as<std::int64_t>(0);
   const auto nsec = node["nsec"].as<std::int64_t>(0);
-  // Unspecified (0) and infinite both mean: not watched.
+  // Unspecified (0) and infinite both mean "not watched".
   if (sec < 0 || nsec < 0 || sec >= std::numeric_limits<std::int64_t>::max() / kNsPerS ||
       nsec >= kNsPerS) {
     return {};
@@ -63,7 +65,7 @@ msgs::Qos profile_from_yaml(const YAML::Node& node) {
   return qos;
 }
 
-/// eProsima's form: one map of truth values.
+/// eProsima's format: one map of truth values.
 msgs::Qos flags_from_yaml(const YAML::Node& node) {
   msgs::Qos qos;
   qos.reliability = node["reliability"].as<bool>(true) ? msgs::Reliability::kReliable
@@ -77,9 +79,13 @@ msgs::Qos flags_from_yaml(const YAML::Node& node) {
 }  // namespace
 
 bool TopicDescription::latched() const {
-  return std::any_of(offered_qos.begin(), offered_qos.end(), [](const msgs::Qos& qos) {
-    return qos.durability == msgs::Durability::kTransientLocal;
-  });
+  return is_static_transforms() || std::ranges::any_of(offered_qos, [](const msgs::Qos& qos) {
+           return qos.durability == msgs::Durability::kTransientLocal;
+         });
+}
+
+bool TopicDescription::is_static_transforms() const {
+  return name == kStaticTransforms || name.ends_with("/" + std::string(kStaticTransforms));
 }
 
 std::string schema_name(const TopicDescription& topic) {
@@ -174,9 +180,13 @@ mcap::StringMap channel_metadata(const TopicDescription& topic) {
                             "\ndurability: " + (topic.latched() ? "true" : "false") +
                             "\nownership: false\nkeyed: false\n";
   const bool ros2 = topic.type_name.find(kRosScope) != std::string::npos;
-  return {{"offered_qos_profiles", qos_to_yaml(topic.offered_qos)},
-          {"qos", flags},
-          {"ros2-types", ros2 ? "true" : "false"}};
+  mcap::StringMap metadata = {{"offered_qos_profiles", qos_to_yaml(topic.offered_qos)},
+                              {"qos", flags},
+                              {"ros2-types", ros2 ? "true" : "false"}};
+  if (!topic.publisher.empty()) {
+    metadata[kPublisher] = topic.publisher;
+  }
+  return metadata;
 }
 
 TopicDescription describe_channel(const mcap::Channel& channel, const mcap::Schema* schema) {
@@ -187,6 +197,7 @@ TopicDescription describe_channel(const mcap::Channel& channel, const mcap::Sche
   TopicDescription topic;
   topic.name = topic_from_file(channel.topic);
   topic.message_encoding = channel.message_encoding;
+  topic.publisher = value(kPublisher);
   if (schema != nullptr) {
     topic.type_name = msgs::ros_type_name(schema->name);
     topic.schema_encoding = schema->encoding;

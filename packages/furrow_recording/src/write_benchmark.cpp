@@ -11,12 +11,12 @@
 
 #include "furrow_core/random.hpp"
 #include "furrow_recording/recorder_thread.hpp"
+#include "units.hpp"
 
 namespace furrow::recording {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kBytesPerMb = 1e6;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();

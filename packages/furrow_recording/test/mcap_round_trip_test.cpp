@@ -117,28 +117,5 @@ TEST(Mcap, ChannelsAndSchemasComeBackAndAreSharedByContent) {
   EXPECT_EQ(reader->channel(1234), nullptr);
 }
 
-TEST(Mcap, CutTakesARangeAndTheLatchedMessagesBeforeIt) {
-  const std::vector<TestMessage> messages = {{"/map", 0, at_ns(10), at_ns(9), bytes_of("old")},
-                                             {"/pose", 1, at_ns(20), {}, bytes_of("1")},
-                                             {"/map", 2, at_ns(30), at_ns(29), bytes_of("new")},
-                                             {"/pose", 3, at_ns(40), {}, bytes_of("2")},
-                                             {"/pose", 4, at_ns(50), {}, bytes_of("3")},
-                                             {"/pose", 5, at_ns(60), {}, bytes_of("4")}};
-  const Bytes file = file_of(messages, small_chunks(Compression::kZstd, 64));
-  CutOptions options;
-  options.read.begin = at_ns(40);
-  options.read.end = at_ns(60);
-  options.latched = [](const Channel& channel) { return channel.topic == "/map"; };
-  Bytes piece;
-  const auto report = cut(memory_source(file), memory_sink(piece), options);
-  ASSERT_TRUE(report.ok()) << report.error().message;
-  EXPECT_EQ(report->messages, 3U);
-  const std::vector<TestMessage> expected = {{"/map", 2, at_ns(40), at_ns(29), bytes_of("new")},
-                                             {"/pose", 3, at_ns(40), {}, bytes_of("2")},
-                                             {"/pose", 4, at_ns(50), {}, bytes_of("3")}};
-  EXPECT_EQ(read_all(*Reader::open(memory_source(piece))), expected);
-  EXPECT_TRUE(verify(*memory_source(piece))->faults.empty());
-}
-
 }  // namespace
 }  // namespace furrow::mcap

@@ -9,14 +9,15 @@
 
 #include "furrow_core/random.hpp"
 #include "furrow_recording/mcap_reader.hpp"
-#include "furrow_recording/mcap_tools.hpp"
+#include "furrow_recording/mcap_verify.hpp"
 #include "furrow_recording/mcap_writer.hpp"
+#include "furrow_recording/recording_copy.hpp"
 
 namespace furrow::mcap {
 
 using Bytes = std::vector<std::byte>;
 
-/// A message that owns its data, named by its topic, for comparison.
+/// A message that owns its data and names its topic, for comparison.
 struct TestMessage {
   std::string topic;
   std::uint32_t sequence = 0;
@@ -53,7 +54,7 @@ inline std::vector<TestMessage> random_messages(std::uint64_t seed, int count, i
   return messages;
 }
 
-/// The order in which a reader gives them.
+/// The messages in the order of a reader.
 inline std::vector<TestMessage> in_log_order(std::vector<TestMessage> messages) {
   std::stable_sort(
       messages.begin(), messages.end(),
@@ -61,7 +62,7 @@ inline std::vector<TestMessage> in_log_order(std::vector<TestMessage> messages) 
   return messages;
 }
 
-/// Writes to topics, which it makes channels as they come.
+/// Writes messages by topic, and adds channels as topics appear.
 class TestWriter {
  public:
   TestWriter(std::unique_ptr<Sink> sink, const WriterOptions& options)
@@ -100,7 +101,7 @@ inline Bytes file_of(const std::vector<TestMessage>& messages, const WriterOptio
   return file;
 }
 
-/// All messages; the errors between them are counted.
+/// Reads all messages and counts the errors between them.
 inline std::vector<TestMessage> read_all(const Reader& reader, ReadOptions options = {},
                                          int* errors = nullptr) {
   std::vector<TestMessage> messages;
@@ -123,6 +124,32 @@ inline std::vector<TestMessage> read_all(const Reader& reader, ReadOptions optio
                         message.log_time, message.publish_time,
                         Bytes(message.data.begin(), message.data.end())});
   }
+}
+
+/// Copies a file in memory, as the tools do with files.
+inline Result<recording::CopyReport> copy(std::span<const std::byte> file, Bytes& output,
+                                          const recording::Selection& selection = {},
+                                          const recording::OpenOptions& open = {}) {
+  const auto reader = recording::open_recording(memory_source(file), open);
+  if (!reader) {
+    return reader.error();
+  }
+  auto writer = Writer::open(memory_sink(output));
+  if (!writer) {
+    return writer.error();
+  }
+  auto report = recording::copy_recording(**reader, **writer, selection);
+  if (Status status = (*writer)->close(); !status) {
+    return status.error();
+  }
+  return report;
+}
+
+/// As `furrow bag recover`: reads every byte of the input.
+inline Result<recording::CopyReport> recover(std::span<const std::byte> file, Bytes& output) {
+  recording::OpenOptions open;
+  open.scan = true;
+  return copy(file, output, {}, open);
 }
 
 inline WriterOptions small_chunks(Compression compression, std::size_t chunk_bytes = 4096) {

@@ -28,18 +28,23 @@ Bytes file_of(const std::vector<Given>& messages) {
   return disk.files.at("run_0.mcap");
 }
 
-Player open(const std::vector<const Bytes*>& files, const PlayerOptions& options = {}) {
-  std::vector<std::unique_ptr<mcap::Source>> sources;
+std::unique_ptr<RecordingReader> readers_of(const std::vector<const Bytes*>& files) {
+  std::vector<std::unique_ptr<RecordingReader>> readers;
   for (const Bytes* file : files) {
-    sources.push_back(mcap::memory_source(*file));
+    readers.push_back(reader_of(*file));
   }
-  auto player = Player::open(std::move(sources), options);
+  return std::move(merge_readers(std::move(readers)).value());
+}
+
+Player open(const std::vector<const Bytes*>& files, const PlayerOptions& options = {}) {
+  auto player = Player::open(readers_of(files), options);
   EXPECT_TRUE(player.ok()) << player.error().message;
   return std::move(player.value());
 }
 
-/// Plays until the end or for `span`, from `now` on, without sleeping: "ms topic=value", where ms
-/// is the caller's time, "!" marks repetitions, "clock ms" the clock, "wait" an endless wait.
+/// Plays from `now` until the end or for `span`, without sleeping. A line is "ms topic=value",
+/// where ms is the caller's time. "!" marks repetitions, "clock ms" the clock, "wait" an endless
+/// wait.
 Lines play(Player& player, Time now, Duration span = Duration::seconds(100)) {
   Lines lines;
   const Time end = now + span;
@@ -152,6 +157,89 @@ TEST(Player, LoopsBeginAgainAtOnce) {
   EXPECT_EQ(player.loops(), 1U);
 }
 
+TEST(Player, ALoopOfOneMessageHasAPeriod) {
+  const Bytes file = file_of({{"pose", 1000, 1}});
+  PlayerOptions options;
+  options.loop = true;
+  Player player = open({&file}, options);
+  EXPECT_EQ(play(player, at_ms(0), Duration::milliseconds(2500)),
+            (Lines{"0 pose=1", "1000 pose=1", "2000 pose=1"}));
+  options.rate = 4.0;
+  Player fast = open({&file}, options);
+  EXPECT_EQ(play(fast, at_ms(0), Duration::milliseconds(600)),
+            (Lines{"0 pose=1", "250 pose=1", "500 pose=1"}));
+}
+
+TEST(Player, ALoopShorterThanATickHasAPeriodToo) {
+  const Bytes file = file_of({{"map", 1000, 1}, {"pose", 1001, 2}});
+  PlayerOptions options;
+  options.loop = true;
+  options.start_offset = Duration::milliseconds(1);
+  Player player = open({&file}, options);
+  EXPECT_EQ(play(player, at_ms(0), Duration::milliseconds(1500)),
+            (Lines{"0 !map=1", "0 pose=2", "1000 !map=1", "1000 pose=2"}));
+}
+
+TEST(Player, TopicsThatAreNotCdrAreNotPlayedAndTold) {
+  Bytes file;
+  auto writer = std::move(mcap::Writer::open(mcap::memory_sink(file)).value());
+  const auto schema = writer->add_schema("pkg/msg/Type", "ros2msg", "");
+  const auto json = writer->add_channel({0, *schema, "/json", "json", {}});
+  const auto other = writer->add_channel({0, *schema, "/other", "wrong_format", {}});
+  const auto unknown = writer->add_channel({0, 0, "/typeless", "cdr", {}});
+  const auto good = writer->add_channel({0, *schema, "/good", "cdr", {}});
+  const Bytes data(8);
+  for (const auto& channel : {json, json, other, unknown, good}) {
+    ASSERT_TRUE(writer->write({*channel, 0, at_ms(1), at_ms(1), data}).ok());
+  }
+  ASSERT_TRUE(writer->close().ok());
+  Player player = open({&file});
+  ASSERT_EQ(player.topics().size(), 1U);
+  EXPECT_EQ(player.topics().front().name, "good");
+  ASSERT_EQ(player.unplayable().size(), 3U);
+  EXPECT_EQ(player.unplayable()[0].name, "json");
+  EXPECT_EQ(player.unplayable()[0].messages, 2U);
+  EXPECT_NE(player.unplayable()[0].reason.find("json"), std::string::npos);
+  EXPECT_EQ(play(player, at_ms(0)), (Lines{"0 good=0", "0 end"}));
+}
+
+TEST(Player, MisspelledPatternsAreTold) {
+  const Bytes file = file_of(kDrive);
+  PlayerOptions options;
+  options.topics.include = {"map", "poze"};
+  EXPECT_EQ(open({&file}, options).unmatched_patterns(), Lines{"poze"});
+}
+
+TEST(Player, AnUnfinishedFileIsTold) {
+  Bytes file = file_of(kDrive);
+  EXPECT_EQ(open({&file}).recording().damage, "");
+  file.resize(file.size() - 100);
+  EXPECT_NE(open({&file}).recording().damage, "");
+}
+
+TEST(Player, StaticTransformsOfSeveralPublishersAreOneTopic) {
+  Bytes file;
+  auto writer = std::move(mcap::Writer::open(mcap::memory_sink(file)).value());
+  TopicDescription topic = topic_of("map", true);
+  const auto schema = writer->add_schema(topic.type_name, "ros2msg", "");
+  for (int i = 1; i <= 3; ++i) {
+    topic.publisher = "node" + std::to_string(i);
+    const auto channel = writer->add_channel({0, *schema, "/map", "cdr", channel_metadata(topic)});
+    const Bytes data(1, static_cast<std::byte>(i));
+    ASSERT_TRUE(writer->write({*channel, 0, at_ms(i), at_ms(i), data}).ok());
+  }
+  const auto pose = writer->add_channel({0, *schema, "/pose", "cdr", {}});
+  const Bytes data(1);
+  ASSERT_TRUE(writer->write({*pose, 0, at_ms(100), at_ms(100), data}).ok());
+  ASSERT_TRUE(writer->close().ok());
+  PlayerOptions options;
+  options.start_offset = Duration::milliseconds(50);
+  Player player = open({&file}, options);
+  ASSERT_EQ(player.topics().size(), 2U);
+  EXPECT_EQ(player.topics().front().offered_qos.size(), 3U);
+  EXPECT_EQ(play(player, at_ms(0), Duration()), (Lines{"0 !map=1", "0 !map=2", "0 !map=3"}));
+}
+
 TEST(Player, PausesStepsAndResumes) {
   const Bytes file = file_of(kDrive);
   PlayerOptions options;
@@ -222,9 +310,7 @@ TEST(Player, ADamagedChunkIsAnErrorAndPlayingGoesOn) {
 TEST(Player, WhatCannotBePlayedIsRefused) {
   const Bytes file = file_of(kDrive);
   const auto refused = [&file](const PlayerOptions& options) {
-    std::vector<std::unique_ptr<mcap::Source>> sources;
-    sources.push_back(mcap::memory_source(file));
-    const auto player = Player::open(std::move(sources), options);
+    const auto player = Player::open(reader_of(file), options);
     return !player.ok() && player.error().code == ErrorCode::kInvalidArgument;
   };
   EXPECT_TRUE(refused({.rate = 0.0}));
@@ -238,9 +324,7 @@ TEST(Player, WhatCannotBePlayedIsRefused) {
   EXPECT_EQ(Player::open({std::filesystem::path("missing.mcap")}, {}).error().code,
             ErrorCode::kNotFound);
   const Bytes noise(100, std::byte{3});
-  std::vector<std::unique_ptr<mcap::Source>> sources;
-  sources.push_back(mcap::memory_source(noise));
-  EXPECT_EQ(Player::open(std::move(sources), {}).error().code, ErrorCode::kParse);
+  EXPECT_EQ(open_recording(mcap::memory_source(noise)).error().code, ErrorCode::kParse);
 }
 
 TEST(Player, AnEmptyRecordingEndsAtOnce) {

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "furrow_recording/mcap_reader.hpp"
-#include "furrow_recording/mcap_tools.hpp"
+#include "furrow_recording/mcap_verify.hpp"
 #include "furrow_recording/mcap_writer.hpp"
 #include "furrow_recording/recorder.hpp"
+#include "furrow_recording/recording_reader.hpp"
 
 namespace furrow::recording {
 
@@ -23,6 +24,11 @@ inline Time at_ms(std::int64_t ms) {
 inline Payload payload_of(std::size_t bytes, int value = 0) {
   return std::make_shared<const Bytes>(bytes, static_cast<std::byte>(value));
 }
+inline std::unique_ptr<RecordingReader> reader_of(std::span<const std::byte> file) {
+  auto reader = open_recording(mcap::memory_source(file));
+  EXPECT_TRUE(reader.ok()) << (reader ? "" : reader.error().message);
+  return std::move(reader.value());
+}
 inline TopicDescription topic_of(const std::string& name, bool latched = false) {
   TopicDescription topic;
   topic.name = name;
@@ -31,7 +37,7 @@ inline TopicDescription topic_of(const std::string& name, bool latched = false) 
   return topic;
 }
 
-/// Files in memory, on a disk whose space can be set.
+/// A disk in memory, with a free space that tests set.
 struct TestDisk {
   std::map<std::string, Bytes> files;
   std::uint64_t free = 1'000'000'000'000;
@@ -49,7 +55,7 @@ struct TestDisk {
   }
 };
 
-/// "topic@ms=first byte", in log order.
+/// The messages as "topic@ms=first byte", in log order.
 inline std::vector<std::string> content_of(const Bytes& file) {
   const auto reader = mcap::Reader::open(mcap::memory_source(file));
   EXPECT_TRUE(reader.ok());
@@ -71,7 +77,7 @@ inline std::vector<std::string> content_of(const Bytes& file) {
 
 using Lines = std::vector<std::string>;
 
-/// A folder of the test's own.
+/// A folder that the test makes and removes.
 class Folder {
  public:
   Folder()

@@ -11,19 +11,19 @@
 
 namespace furrow::mcap {
 
-/// Where a file's bytes go.
+/// The target of a file's bytes.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// Appends all of it, or fails with kIo, and then a part may have been appended.
+  /// Appends all bytes. After kIo a part may have been appended.
   [[nodiscard]] virtual Status write(std::span<const std::byte> bytes) = 0;
   /// Drops everything behind the first `size` bytes.
   [[nodiscard]] virtual Status truncate(std::uint64_t size) = 0;
-  /// Returns when what was written is on the medium.
+  /// Returns when all written bytes are on the medium.
   [[nodiscard]] virtual Status sync() = 0;
 };
 
-/// Where a file's bytes come from.
+/// The source of a file's bytes.
 class Source {
  public:
   virtual ~Source() = default;
@@ -32,10 +32,10 @@ class Source {
   [[nodiscard]] virtual Status read(std::uint64_t offset, std::span<std::byte> bytes) const = 0;
 };
 
-/// Makes a new file; an existing one is kept and refused (kIo). Bytes are handed to the operating
-/// system at each write, so that they survive the end of this process.
+/// Makes a new file. An existing file is kept and refused (kIo). Each write reaches the operating
+/// system, so that bytes survive the end of this process.
 [[nodiscard]] Result<std::unique_ptr<Sink>> create_file(const std::filesystem::path& path);
-/// kNotFound or kIo. The size is taken at opening; what is appended later is not seen.
+/// Opens a file: kNotFound or kIo. Bytes appended after opening are not seen.
 [[nodiscard]] Result<std::unique_ptr<Source>> open_file(const std::filesystem::path& path);
 
 /// Appends to `bytes`, which must outlive the sink.

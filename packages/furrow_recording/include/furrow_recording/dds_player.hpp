@@ -11,14 +11,14 @@
 namespace furrow::recording {
 
 struct DdsPlayerOptions {
-  /// Wait this long at most for a reader of any topic before the first message, and until no more
-  /// come; volatile messages without a reader are gone.
+  /// The longest wait, before the first message, for a reader of any topic and until no further
+  /// reader appears. Volatile messages without a reader are lost.
   Duration wait_for_readers;
 };
 
 struct DdsPlayerStatus {
   std::uint64_t messages = 0;
-  std::uint64_t dropped = 0;  ///< the wire refused them
+  std::uint64_t dropped = 0;  ///< refused by the transport
   std::uint64_t faults = 0;   ///< damaged chunks left out
   std::string last_fault;
   double lateness_p99_s = 0.0;  ///< of the last 4096 messages, against their due time
@@ -27,7 +27,7 @@ struct DdsPlayerStatus {
   bool finished = false;
 };
 
-/// Writes a recording to a domain, with the QoS that was recorded, on a thread of its own.
+/// Publishes a recording in a domain, with the recorded QoS, from a dedicated thread.
 class DdsPlayer {
  public:
   /// Starts at once. Throws ConfigError when an endpoint is refused. The transport must outlive it.

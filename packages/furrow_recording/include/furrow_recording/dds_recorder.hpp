@@ -10,13 +10,13 @@
 
 namespace furrow::recording {
 
-/// Records every topic of a domain that the filters accept, of any type, as it is discovered; the
-/// transport's own writers are left out. Topics with keys, or with several types, are recorded by
-/// the first type without keys, or not at all, and then named in skipped().
+/// Records every discovered topic of a domain that the filters accept, of any type. The transport's
+/// own writers are left out. Each publisher of a latched topic has its own channel. Of a topic with
+/// several types the first type without keys is recorded; skipped() names the others.
 class DdsRecorder {
  public:
-  /// Begins at once, or arms when there is a pre-trigger window. Log times are Unix times of
-  /// reception. Throws as Recorder. The transport must outlive it.
+  /// Records at once, or arms the pre-trigger window. Log times are Unix times of reception.
+  /// Throws as Recorder. The transport must outlive it.
   DdsRecorder(dds::DdsTransport& transport, const RecorderParameters& parameters,
               std::filesystem::path stem);
   ~DdsRecorder();

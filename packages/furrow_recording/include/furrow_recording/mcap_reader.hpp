@@ -15,11 +15,15 @@
 
 namespace furrow::mcap {
 
-/// What a file may ask of this process; beyond it, kOutOfRange. No length from a file is trusted:
-/// memory is taken for bytes that are there.
+enum class ScanDepth : std::uint8_t;
+
+/// Bounds of the memory that a file can take. Lengths in a file are never trusted: memory is taken
+/// for bytes that are there.
 struct ReaderLimits {
-  std::uint64_t record_bytes = 1u << 29;  ///< one record, and one chunk when unpacked
-  std::uint64_t open_bytes = 1u << 30;    ///< unpacked chunks that overlap in time
+  std::uint64_t record_bytes = 1u << 29;  ///< one record, and one chunk unpacked; else kOutOfRange
+  /// Unpacked chunks that overlap in time. Above it chunks are unpacked again when their next
+  /// message is due: slower, with the same messages.
+  std::uint64_t open_bytes = 1u << 27;
 };
 
 struct ReadOptions {
@@ -29,14 +33,14 @@ struct ReadOptions {
   bool check_crcs = true;
 };
 
-/// Messages in the order of their log time; those of equal time in the order of the file.
+/// Messages in the order of their log time. Messages of equal time come in the order of the file.
 class MessageCursor {
  public:
   MessageCursor(MessageCursor&&) noexcept;
   MessageCursor& operator=(MessageCursor&&) noexcept;
   ~MessageCursor();
   /// The next message, or none at the end. Its data live until the next call. After an error (a
-  /// damaged chunk) the chunk is left out and reading may go on.
+  /// damaged chunk) reading may go on: only what could not be read is left out.
   [[nodiscard]] Result<std::optional<Message>> next();
 
  private:
@@ -46,14 +50,16 @@ class MessageCursor {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads one MCAP file by its summary; where there is none (a recorder that was killed, a file cut
-/// short) the whole file is gone through once at opening, up to the last whole record.
+/// Reads one MCAP file. Nothing that is optional in a file is trusted or needed: opening passes
+/// over the headers of all records, and unpacks the chunks that their message indexes do not
+/// describe. A file without its end (a killed recorder, a full disk) is read up to its last whole
+/// record.
 class Reader {
  public:
-  /// kParse when it is no MCAP file or its summary is damaged.
+  /// kParse when it is not an MCAP file. A damaged or missing end is told by damage().
   [[nodiscard]] static Result<Reader> open(std::unique_ptr<Source> source,
                                            const ReaderLimits& limits = {});
-  /// Goes through the file in any case, and leaves damaged chunks out: for a damaged summary.
+  /// As open(), and reads and checks every byte.
   [[nodiscard]] static Result<Reader> scan(std::unique_ptr<Source> source,
                                            const ReaderLimits& limits = {});
   Reader(Reader&&) noexcept;
@@ -61,15 +67,15 @@ class Reader {
   ~Reader();
 
   [[nodiscard]] const Header& header() const;
-  /// `statistics` is always set.
+  /// As counted in the file, not as its own summary says. `statistics` is always set.
   [[nodiscard]] const Summary& summary() const;
   /// Null when there is none.
   [[nodiscard]] const Channel* channel(ChannelId id) const;
-  /// Why the file had to be gone through; empty when it was read by its summary.
+  /// Why the file is not whole; empty when it is.
   [[nodiscard]] const std::string& damage() const;
   /// Bytes at the end that belong to no whole record.
   [[nodiscard]] std::uint64_t bytes_ignored() const;
-  /// What was damaged and left out when the file was gone through; at most a hundred.
+  /// What was found damaged and left out at opening. At most a hundred.
   [[nodiscard]] const std::vector<std::string>& faults() const;
 
   /// The cursor must not outlive the reader.
@@ -80,6 +86,8 @@ class Reader {
  private:
   friend class MessageCursor;
   class Impl;
+  [[nodiscard]] static Result<Reader> open(std::unique_ptr<Source> source,
+                                           const ReaderLimits& limits, ScanDepth depth);
   explicit Reader(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -12,7 +12,7 @@
 
 /// The MCAP container (specification version 0, mcap.dev/spec): timestamped messages of any
 /// encoding, in compressed and checked chunks, with an index at the end. Times are nanoseconds on
-/// any clock, never negative. CRCs are CRC-32 (ISO 3309, as in zlib).
+/// any clock; log times are never negative. CRCs are CRC-32 (ISO 3309, as in zlib).
 namespace furrow::mcap {
 
 using SchemaId = std::uint16_t;   ///< 0: none
@@ -41,7 +41,7 @@ struct Channel {
   StringMap metadata;
 };
 
-/// A view: whoever hands it out says how long `data` lives.
+/// A view: its source says how long `data` live.
 struct Message {
   ChannelId channel_id = 0;
   std::uint32_t sequence = 0;
@@ -63,7 +63,7 @@ struct Metadata {
   StringMap values;
 };
 
-/// Where a chunk is and what it holds. Offsets count from the start of the file.
+/// The place and content of a chunk. Offsets count from the start of the file.
 struct ChunkIndex {
   Time start_time;
   Time end_time;  ///< included
@@ -104,7 +104,7 @@ struct Statistics {
   std::map<ChannelId, std::uint64_t> channel_message_counts;
 };
 
-/// What the end of a file says about the whole.
+/// The content of a file: as its end says it, or as it was found.
 struct Summary {
   std::map<SchemaId, Schema> schemas;
   std::map<ChannelId, Channel> channels;

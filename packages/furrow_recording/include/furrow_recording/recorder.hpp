@@ -12,17 +12,16 @@
 #include "furrow_core/result.hpp"
 #include "furrow_core/time.hpp"
 #include "furrow_recording/byte_stream.hpp"
+#include "furrow_recording/payload.hpp"
 #include "furrow_recording/recorder_parameters.hpp"
 #include "furrow_recording/topic_description.hpp"
 
 namespace furrow::recording {
 
-using Payload = std::shared_ptr<const std::vector<std::byte>>;
-
 enum class RecorderState : std::uint8_t {
   kArmed,      ///< keeps the last pre_trigger_s in memory, waits for trigger()
   kRecording,  ///< writes
-  kPaused,     ///< lets messages go, counted; latched ones are kept
+  kPaused,     ///< counts messages and keeps the latched ones only
   kStopped,    ///< closed, by stop() or by a fault
 };
 
@@ -30,22 +29,22 @@ struct RecordedTopic {
   std::string name;
   std::uint64_t messages = 0;  ///< written, or waiting in the current chunk
   std::uint64_t bytes = 0;     ///< of their payloads
-  std::uint64_t dropped = 0;   ///< not written though recording: queue full, refused, disk
+  std::uint64_t dropped = 0;   ///< lost while recording: full queue, refused message, full disk
 };
 
 struct RecorderStatus {
   RecorderState state = RecorderState::kArmed;
-  std::string fault;  ///< why it stopped by itself, or the last message was refused
+  std::string fault;  ///< why it stopped by itself, or refused its last message
   std::vector<std::filesystem::path> files;
-  std::vector<RecordedTopic> topics;  ///< by the numbers that add_topic() gave
+  std::vector<RecordedTopic> topics;  ///< by the numbers of add_topic()
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;    ///< of all files
   std::uint64_t dropped = 0;  ///< of all topics
-  std::uint64_t paused = 0;   ///< let go while paused
+  std::uint64_t paused = 0;   ///< arrived while paused
   std::uint64_t expired = 0;  ///< left the pre-trigger window
 };
 
-/// What the recorder asks of the machine; replaced in tests.
+/// The recorder's access to the machine; replaced in tests.
 struct RecorderEnvironment {
   std::function<Result<std::unique_ptr<mcap::Sink>>(const std::filesystem::path&)> create_file;
   /// Bytes that may still be written beside this path.
@@ -58,8 +57,8 @@ struct RecorderEnvironment {
 /// thread-safe; see RecorderThread.
 ///
 /// Files are STEM_0.mcap, STEM_1.mcap, ... A full disk (less than min_free_mb) or a failed write
-/// closes the file in good order, sets `fault` and state kStopped; more messages are then counted
-/// as dropped.
+/// closes the file in good order and sets `fault` and state kStopped. Later messages count as
+/// dropped.
 class Recorder {
  public:
   /// `stem`: path of the files without number and extension; its folder is made. Throws ConfigError
@@ -71,17 +70,17 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   [[nodiscard]] bool accepts(const std::string& topic) const;
-  /// A number for the topic; the same name and type give the same. Filters are not asked.
+  /// The topic's number: equal for equal name, type and publisher. Filters do not apply.
   [[nodiscard]] std::size_t add_topic(const TopicDescription& topic);
 
-  /// Takes a message over. The error is also in status().fault. @pre topic from add_topic().
+  /// Records a message. The error is also in status().fault. @pre topic from add_topic().
   Status write(std::size_t topic, Time log_time, Time publish_time, Payload payload);
-  /// Counts messages that were lost before they came here.
+  /// Counts messages that were lost before this call.
   void count_dropped(std::size_t topic, std::uint64_t messages);
-  /// To be called now and then: writes a chunk that waits longer than flush_s.
+  /// Writes a chunk that waits for longer than flush_s. Call it regularly.
   Status tick(Time now);
 
-  /// kArmed: writes what is in memory and goes on recording. Else nothing.
+  /// kArmed: writes the messages in memory and records from now on. Otherwise does nothing.
   Status trigger();
   void pause();
   void resume();

@@ -24,25 +24,34 @@ struct RecorderParameters {
   std::int64_t queue_messages = 10000;
 
   void visit(ParameterVisitor& v) {
+    visit_files(v);
+    visit_times(v);
+    visit_memory(v);
+  }
+
+ private:
+  void visit_files(ParameterVisitor& v) {
     v.visit({.name = "include", .description = "topics to record, as patterns with * and ?"},
             include);
     v.visit({.name = "exclude", .description = "topics to leave out, before all others"}, exclude);
     v.visit({.name = "compression", .description = "of chunks", .choices = {"none", "lz4", "zstd"}},
             compression);
     v.visit({.name = "schema",
-             .description = "in which language types are described in the file",
+             .description = "language of the message types in the file",
              .choices = {"ros2msg", "omgidl"}},
             schema);
     v.visit({.name = "chunk_kb",
              .unit = "kB",
-             .description = "messages that are packed, checked and written as one",
+             .description = "messages that are compressed, checked and written together",
              .min = 4,
              .max = 65536},
             chunk_kb);
+  }
+
+  void visit_times(ParameterVisitor& v) {
     v.visit({.name = "flush_s",
              .unit = "s",
-             .description = "a chunk is written at the latest after this time; what a killed "
-                            "recorder loses",
+             .description = "longest time before a chunk is written; what a killed recorder loses",
              .min = 0.01,
              .max = 3600},
             flush_s);
@@ -65,9 +74,12 @@ struct RecorderParameters {
              .min = 0,
              .max = 3600},
             pre_trigger_s);
+  }
+
+  void visit_memory(ParameterVisitor& v) {
     v.visit({.name = "pre_trigger_mb",
              .unit = "MB",
-             .description = "memory for that; the oldest messages go first",
+             .description = "memory for the pre-trigger window; the oldest messages go first",
              .min = 1,
              .max = 65536},
             pre_trigger_mb);
@@ -79,16 +91,13 @@ struct RecorderParameters {
             min_free_mb);
     v.visit({.name = "queue_mb",
              .unit = "MB",
-             .description = "messages that wait for the recorder's thread; more are dropped and "
-                            "counted",
+             .description = "messages that wait for the recorder; more are dropped and counted",
              .min = 1,
              .max = 65536},
             queue_mb);
-    v.visit({.name = "queue_messages",
-             .description = "as queue_mb, by their number",
-             .min = 1,
-             .max = 1e6},
-            queue_messages);
+    v.visit(
+        {.name = "queue_messages", .description = "as queue_mb, by number", .min = 1, .max = 1e6},
+        queue_messages);
   }
 };
 

@@ -6,12 +6,12 @@
 
 namespace furrow::recording {
 
-/// True when the whole of `text` matches `pattern`: `*` stands for any characters, also none and
-/// also `/`; `?` for one; everything else for itself. Linear memory, at most |pattern| |text|
-/// steps.
+/// True when the whole of `text` matches `pattern`: `*` matches any characters, also none and also
+/// `/`; `?` matches one character; all others match themselves. Linear memory, at most
+/// |pattern| |text| steps.
 [[nodiscard]] bool matches_glob(std::string_view pattern, std::string_view text);
 
-/// Topics by patterns. A leading "/" of patterns and topics is left out of the comparison.
+/// Selects topics by patterns. A leading "/" of patterns and topics does not count.
 struct TopicFilter {
   std::vector<std::string> include = {"*"};
   std::vector<std::string> exclude;
@@ -19,5 +19,9 @@ struct TopicFilter {
   /// One of `include` matches and none of `exclude`.
   [[nodiscard]] bool accepts(std::string_view topic) const;
 };
+
+/// The patterns that match none of these topics: misspelled, most likely. "*" is never one.
+[[nodiscard]] std::vector<std::string> unmatched_patterns(const std::vector<std::string>& patterns,
+                                                          const std::vector<std::string>& topics);
 
 }  // namespace furrow::recording
