@@ -27,7 +27,8 @@ void control_cycle(benchmark::State& state) {
   for (auto _ : state) {
     const Time now = Time::from_nanoseconds(cycle * kPeriod.count_ns());
     const double x_m = kSpeed_mps * now.to_seconds();
-    if (cycle % 5 == 0) controller.set_odometry({now, {x_m, 0.0, 0.0}, {kSpeed_mps, 0.0, 0.0}});
+    if (cycle % 5 == 0)
+      controller.set_odometry(now, {now, {x_m, 0.0, 0.0}, {kSpeed_mps, 0.0, 0.0}});
     if (cycle % 100 == 0) {
       const auto first = static_cast<std::int64_t>((x_m + 0.18) / kSpacing_m);
       for (std::size_t i = 0; i < stops; ++i) {

@@ -60,12 +60,14 @@ Status AxisController::set_plan(Time now, std::span<const PlannedStop> stops) {
   return status;
 }
 
-void AxisController::set_odometry(const BaseState& base) {
+bool AxisController::set_odometry(Time arrival, const BaseState& base) {
   const bool valid = finite(base);
-  safety_.odometry_came(base.stamp, valid);
-  if (!valid) return;
+  // A last stamp in the future was left there by a step of this computer's clock.
+  const bool reordered = valid && base_ && base.stamp <= base_->stamp && base_->stamp <= arrival;
+  if (reordered || !safety_.odometry_came(arrival, base.stamp, valid)) return false;
   base_ = base;
   progress_.add(base);
+  return true;
 }
 
 void AxisController::set_protected(Time newest_image, std::span<const ProtectedPlant> plants) {

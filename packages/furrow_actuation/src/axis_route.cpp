@@ -150,9 +150,18 @@ void AxisController::hurry(Time now) {
   }
 }
 
+double AxisController::off_setpoint_m() const {
+  return reading_->position_m - motion_at(reading_->stamp).position_m;
+}
+
+bool AxisController::at_rest(Time first) const {
+  return std::abs(motion_at(first).velocity_mps) <= parameters_.rest_speed_mps &&
+         std::abs(off_setpoint_m()) <= parameters_.settled_error_m;
+}
+
 AxisController::Landing AxisController::predict_landing(Time middle) const {
   // What the axis was off its setpoint when it was last read, it is taken to be off then, too.
-  const double off_m = reading_->position_m - motion_at(reading_->stamp).position_m;
+  const double off_m = off_setpoint_m();
   const auto land = [&](Time time) {
     const MotionState state = motion_at(time);
     return landing_point(extrapolate(*base_, time), axis_, droplet_, state.position_m + off_m,
@@ -182,7 +191,8 @@ bool AxisController::fire_when_due(const PlannedStop& stop, const Aim& aim, bool
   if (last_close_ && (now - *last_close_).to_seconds() < parameters_.min_off_s) return false;
   const Time first = now + Duration::seconds(calibration_.open_delay_s);
   const Time middle = first + Duration::seconds(parameters_.dwell_s / 2.0);
-  if (!passing && std::abs(motion_at(first).velocity_mps) > parameters_.rest_speed_mps) {
+  const bool restless = !passing && !at_rest(first);
+  if (restless) {
     // On its last millimetres: the spray may wait for as long as it still lands near enough.
     const double behind_m =
         aim.crossing.closing_speed_mps * (middle - aim.crossing.emission).to_seconds();
@@ -192,7 +202,8 @@ bool AxisController::fire_when_due(const PlannedStop& stop, const Aim& aim, bool
   constexpr double kSpeedMargin = 1.01;
   if (progress_.motion_s(stop.observed, now) > parameters_.max_target_age_s) {
     skip(stop, SkipReason::kStale, now);
-  } else if (!((landing.middle_F - stop.p_F).norm() <= parameters_.placement_tolerance_m) ||
+  } else if (restless ||
+             !((landing.middle_F - stop.p_F).norm() <= parameters_.placement_tolerance_m) ||
              !(landing.q_velocity_mps <= parameters_.max_fire_speed_mps * kSpeedMargin)) {
     skip(stop, SkipReason::kLate, now);
   } else if (protects(landing)) {

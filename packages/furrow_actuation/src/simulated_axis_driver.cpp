@@ -135,9 +135,14 @@ void SimulatedAxisDriver::follow_setpoint(const MotionState& from, double h) {
     const double slope = (setpoint_.position_m - from.position_m) / h;
     const double steady_behind = slope * parameters_.lag_s;
     const double behind = from.position_m - reading_.position_m - steady_behind;
-    reading_.position_m =
+    const double next_m =
         setpoint_.position_m - steady_behind - behind * std::exp(-h / parameters_.lag_s);
-    reading_.velocity_mps = (setpoint_.position_m - reading_.position_m) / parameters_.lag_s;
+    // A jammed axis that comes free is far behind, and yet no faster than it can be.
+    const double most_m = limits_.max_velocity_mps * h;
+    reading_.position_m += std::clamp(next_m - reading_.position_m, -most_m, most_m);
+    reading_.velocity_mps =
+        std::clamp((setpoint_.position_m - reading_.position_m) / parameters_.lag_s,
+                   -limits_.max_velocity_mps, limits_.max_velocity_mps);
   }
 }
 

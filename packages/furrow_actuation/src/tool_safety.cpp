@@ -19,9 +19,11 @@ void ToolSafety::tracks_came(Time newest_image, Protection protection) {
   protection_ = protection;
 }
 
-void ToolSafety::odometry_came(Time stamp, bool finite) {
+bool ToolSafety::odometry_came(Time arrival, Time stamp, bool finite) {
   odometry_finite_ = finite;
-  if (finite) odometry_ = stamp;
+  if (!finite || older_than(stamp, arrival, parameters_.odometry_delay_limit_s)) return false;
+  odometry_ = stamp;
+  return true;
 }
 
 void ToolSafety::drive_read(const AxisReading& reading, Time now) {

@@ -38,6 +38,12 @@ void ToolSafetyParameters::visit(ParameterVisitor& v) {
   v.visit(deadline("odometry_deadline_s", "odometry that is older leads to the safe state", 0.005,
                    10.0),
           odometry_deadline_s);
+  v.visit(
+      deadline("odometry_delay_limit_s",
+               "odometry that arrives later after its stamp, or earlier before it, is not used: "
+               "a late message cannot be told from a clock that is off",
+               0.001, 10.0),
+      odometry_delay_limit_s);
   v.visit(deadline("heartbeat_deadline_s",
                    "without a heartbeat of the planner for longer: safe state", 0.01, 10.0),
           heartbeat_deadline_s);

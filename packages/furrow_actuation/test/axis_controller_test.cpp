@@ -101,6 +101,28 @@ TEST(AxisController, ASprayWaitsForTheAxisToRestWhileItStillLandsNearEnough) {
   EXPECT_LT(late, 40);
 }
 
+TEST(AxisController, AnAxisThatDoesNotFollowItsSetpointSpraysNothing) {
+  // Jammed near enough for the spray to land on its aim. When it comes free it moves at any speed.
+  const AxisControllerParameters limits;
+  for (const double short_m : {0.0005, 0.0065}) {
+    Trip trip;
+    trip.plan = {stop_at(1, {0.8, 0.3}, {})};
+    const double jam_at_m = 0.3 - short_m;
+    while (trip.axis().driver.reading().position_m < jam_at_m) trip.run(0.002);
+    trip.axis().driver.set_jammed(true);
+    const double off_m = 0.3 - trip.axis().driver.reading().position_m;
+    ASSERT_LT(off_m, limits.placement_tolerance_m);
+    trip.run(1.5);
+    const bool settled = off_m <= limits.settled_error_m;
+    EXPECT_EQ(trip.count(ControllerEventKind::kSprayOpened), settled ? 1 : 0) << off_m;
+    EXPECT_EQ(trip.count(ControllerEventKind::kStopSkipped), settled ? 0 : 1) << off_m;
+    if (!settled) {
+      EXPECT_GT(off_m, limits.settled_error_m);
+      EXPECT_EQ(trip.last(ControllerEventKind::kStopSkipped).reason, SkipReason::kLate);
+    }
+  }
+}
+
 TEST(AxisController, ASmallCorrectionShortBeforeASprayDoesNotMakeItLate) {
   // The stop at 0.8 m is due after some 1.2 s; a movement of 0.5 mm takes 20 ms.
   for (int cycles = 0; cycles < 30; ++cycles) {
@@ -254,7 +276,7 @@ TEST(AxisController, AllocatesNothingPerCycle) {
     ASSERT_TRUE(driver.read(now, Rig::kPeriod).ok());
     controller.set_reading(now, driver.reading());
     controller.safety().heartbeat_came(now);
-    controller.set_odometry({now, {x, 0.0, 0.0}, {standing ? 0.0 : 0.5, 0.0, 0.02}});
+    controller.set_odometry(now, {now, {x, 0.0, 0.0}, {standing ? 0.0 : 0.5, 0.0, 0.02}});
     for (auto& stop : plan) stop.observed = now;
     ASSERT_TRUE(controller.set_plan(now, plan).ok());
     controller.set_protected(now, crops);

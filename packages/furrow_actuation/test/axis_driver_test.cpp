@@ -138,6 +138,24 @@ TEST(SimulatedAxis, JammedAxisFaultsByItsFollowingError) {
   EXPECT_NEAR(run.position(), 0.0, 1e-9);
 }
 
+TEST(SimulatedAxis, AnAxisThatComesFreeIsNoFasterThanItCanBe) {
+  SimulatedAxisParameters parameters = ready();
+  parameters.lag_s = 0.002;
+  DriverRun run(parameters);
+  run.driver.set_jammed(true);
+  ASSERT_TRUE(run.write(AxisCommandMode::kProfile, 0.5).ok());
+  while (run.driver.reading().following_error_m < 0.03) run.cycle();
+  ASSERT_NE(run.state(), AxisState::kFault);
+  run.driver.set_jammed(false);
+  for (int i = 0; i < 50; ++i) {
+    const double before_m = run.position();
+    run.cycle();
+    ASSERT_LE(std::abs(run.driver.reading().velocity_mps), kLimits.max_velocity_mps);
+    ASSERT_LE(std::abs(run.position() - before_m),
+              kLimits.max_velocity_mps * kPeriod.to_seconds() + 1e-9);
+  }
+}
+
 TEST(SimulatedAxis, FaultsAndEmergencyStopAreLatched) {
   for (const DriveFault fault :
        {DriveFault::kDrive, DriveFault::kPositionLimit, DriveFault::kFollowingError}) {

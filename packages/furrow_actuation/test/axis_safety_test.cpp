@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BaseState bad = r.rig.base();
                     bad.X_FB.y_m = std::numeric_limits<double>::quiet_NaN();
                     r.rig.send_odometry = false;
-                    r.axis().controller.set_odometry(bad);
+                    r.axis().controller.set_odometry(r.rig.now(), bad);
                   },
                   [](Trip& r) { r.rig.send_odometry = true; }},
         CauseCase{"ReadingStale", SafetyCause::kReadingStale, 0.024,
@@ -135,7 +135,7 @@ TEST(AxisController, MeasuredPositionAndFollowingErrorAreWatched) {
       controller.set_protected(now, {});
       controller.safety().heartbeat_came(now);
       controller.safety().valve_written(now, false, true);
-      controller.set_odometry({now, {}, {0.5, 0.0, 0.0}});
+      controller.set_odometry(now, {now, {}, {0.5, 0.0, 0.0}});
       EXPECT_TRUE(controller.set_plan(now, {}).ok());
       cause = controller.update(now, Rig::kPeriod).cause;
     }

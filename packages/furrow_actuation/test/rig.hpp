@@ -102,6 +102,7 @@ class Rig {
   [[nodiscard]] const std::vector<Landed>& landed() const { return landed_; }
 
   bool send_odometry = true;
+  Duration odometry_clock;  ///< what the clock of the odometry is ahead
   bool send_tracks = true;
   bool send_heartbeat = true;
   std::vector<ProtectedPlant> crops;  ///< in the tracks
@@ -110,7 +111,7 @@ class Rig {
   void step() {
     for (auto& a : axes_) {
       if (cycle_ % 5 != 0) break;
-      if (send_odometry) a->controller.set_odometry(base_);
+      if (send_odometry) a->controller.set_odometry(now_, odometry());
       if (send_tracks) a->controller.set_protected(now_, crops);
       if (send_heartbeat) a->controller.safety().heartbeat_came(now_);
     }
@@ -126,6 +127,12 @@ class Rig {
   static constexpr Duration kPeriod = Duration::milliseconds(2);
 
  private:
+  [[nodiscard]] BaseState odometry() const {
+    BaseState sent = base_;
+    sent.stamp += odometry_clock;
+    return sent;
+  }
+
   void drive_on() {
     const int substeps = 20;
     const double h = kPeriod.to_seconds() / substeps;

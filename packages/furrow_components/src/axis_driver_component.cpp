@@ -110,7 +110,10 @@ class AxisDriverComponent final : public graph::Component {
         [this](const auto&) { controller_.safety().heartbeat_came(context_.arrival()); });
     context.input<topics::RobotOdometry>([this](const auto& message) {
       const BaseOdometry base = from_msg(*message);
-      controller_.set_odometry({base.stamp, base.X_FB, {base.speed_mps, 0.0, base.yaw_rate_radps}});
+      const actuation::Twist2 twist_B{base.speed_mps, 0.0, base.yaw_rate_radps};
+      if (!controller_.set_odometry(context_.arrival(), {base.stamp, base.X_FB, twist_B})) {
+        context_.count("odometry_not_used");
+      }
       if (std::isfinite(base.X_FB.x_m)) base_x_m_ = base.X_FB.x_m;
     });
     context.input<topics::Tracks>([this](const auto& tracks) { protect(*tracks); });

@@ -34,7 +34,9 @@ class AxisController {
   /// first ones are taken) and with kInvalidArgument (a position that is not finite, no targets:
   /// those stops are left out). An empty plan is a valid one.
   Status set_plan(Time now, std::span<const PlannedStop> stops);
-  void set_odometry(const BaseState& base);
+  /// `arrival` is when the message came. Returns whether it is used: odometry that is not finite,
+  /// not newer than the last, or beyond ToolSafetyParameters::odometry_delay_limit_s is left out.
+  bool set_odometry(Time arrival, const BaseState& base);
   /// All protected plants near the tool, from the newest tracks; `newest_image` is when those saw
   /// the field. More than kMaxProtectedPlants, or one that is not finite, is a cause for the safe
   /// state.
@@ -94,6 +96,10 @@ class AxisController {
                      Duration period);
   void supervise_spray(Time now, Duration period);
   void close_spray(Time now, SkipReason reason);
+  /// Measured minus commanded, when the drive was last read.
+  [[nodiscard]] double off_setpoint_m() const;
+  /// The axis rests at its setpoint when drops leave from `first` on.
+  [[nodiscard]] bool at_rest(Time first) const;
   [[nodiscard]] Landing predict_landing(Time middle) const;
   [[nodiscard]] bool protects(const Landing& landing) const;
 

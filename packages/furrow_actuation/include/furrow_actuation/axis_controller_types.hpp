@@ -81,6 +81,7 @@ struct AxisControllerParameters {
   double placement_tolerance_m = 0.008;
   double protection_radius_m = 0.030;
   double rest_speed_mps = 0.05;
+  double settled_error_m = 0.001;
   double max_fire_speed_mps = 0.5;
   double max_target_age_s = 30.0;  ///< of motion: time that the robot stands does not count
   double reverse_tolerance_m = 0.002;

@@ -16,6 +16,7 @@ struct ToolSafetyParameters {
   double plan_deadline_s = 2.0;
   double tracks_deadline_s = 2.0;
   double odometry_deadline_s = 0.10;
+  double odometry_delay_limit_s = 0.02;
   double heartbeat_deadline_s = 0.07;
   double reading_deadline_s = 0.02;
   double valve_deadline_s = 0.02;
@@ -59,8 +60,10 @@ class ToolSafety {
   /// `newest_image`: the acquisition of the newest image in the tracks, so that tracks that are
   /// repeated grow old.
   void tracks_came(Time newest_image, Protection protection);
-  /// Odometry that is not finite does not replace the last good stamp.
-  void odometry_came(Time stamp, bool finite);
+  /// Returns whether the odometry may be used: it is finite, and `arrival` differs from its stamp
+  /// by odometry_delay_limit_s at most. A late message cannot be told from a clock that is off, and
+  /// either puts the robot elsewhere. What is not used does not replace the last good stamp.
+  [[nodiscard]] bool odometry_came(Time arrival, Time stamp, bool finite);
   void drive_read(const AxisReading& reading, Time now);
   /// The outcome of writing the valve's level. An opening that is not confirmed is a fault at once,
   /// a level that is to stay shut after valve_deadline_s.

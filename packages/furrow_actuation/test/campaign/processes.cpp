@@ -35,6 +35,14 @@ TracksMessage TrackerProcess::look(const World& world) {
   return message;
 }
 
+void PlannerProcess::take(const TracksMessage& tracks, const BaseState& base) {
+  tracks_ = tracks;
+  geometry::AxisModel at_base = axis_model(0);
+  at_base.p_BN0.x() = 0.0;
+  const double landing_m = drop_landing(base, at_base, 0.0, 0.0).x();
+  passed_B_m_ = std::max(passed_B_m_.value_or(landing_m), landing_m);
+}
+
 PlanMessage PlannerProcess::plan(int axis, int axes) const {
   PlanMessage message;
   for (const SeenPlant& seen : tracks_->plants) {
@@ -42,7 +50,8 @@ PlanMessage PlannerProcess::plan(int axis, int axes) const {
     const bool beside = std::ranges::any_of(tracks_->plants, [&](const SeenPlant& other) {
       return other.plant.crop && (other.plant.p_F - seen.plant.p_F).norm() < kZone_m;
     });
-    if (beside) continue;
+    const bool passed = seen.plant.p_F.x() <= *passed_B_m_ + axis_model(axis).p_BN0.x();
+    if (beside || passed) continue;
     PlannedStop stop;
     stop.stop_id = seen.plant.id;
     stop.targets.push_back(seen.plant.id);
@@ -88,7 +97,7 @@ void ToolProcess::take(const TracksMessage& tracks) {
 const CycleReport& ToolProcess::cycle(Time now, ToolInbox& inbox) {
   now_ = now;
   ToolSafety& safety = controller().safety();
-  inbox.odometry.receive(now, [&](const BaseState& base) { controller().set_odometry(base); });
+  inbox.odometry.receive(now, [&](const BaseState& base) { controller().set_odometry(now, base); });
   inbox.tracks.receive(now, [&](const TracksMessage& tracks) { take(tracks); });
   inbox.plan.receive(
       now, [&](const PlanMessage& plan) { (void)controller().set_plan(now, plan.stops).ok(); });

@@ -58,18 +58,25 @@ class TrackerProcess {
   std::map<std::int64_t, SeenPlant> memory_;
 };
 
-/// Gives each weed that is not beside a crop to an axis; a plan for each tracks message.
+/// Gives each weed that is not beside a crop to an axis; a plan for each tracks message. As the
+/// planner's views do, it finishes what the robot has passed, at the furthest point that it
+/// reached.
 class PlannerProcess {
  public:
   static constexpr double kZone_m = 0.040;
   Lifecycle life;
-  void take(const TracksMessage& tracks) { tracks_ = tracks; }
-  void forget() { tracks_.reset(); }
+  void take(const TracksMessage& tracks, const BaseState& base);
+  void forget() {
+    tracks_.reset();
+    passed_B_m_.reset();
+  }
   [[nodiscard]] bool ready() const { return tracks_.has_value(); }
   [[nodiscard]] PlanMessage plan(int axis, int axes) const;
 
  private:
   std::optional<TracksMessage> tracks_;
+  /// Where drops landed at most that left at the origin of the base, along the row.
+  std::optional<double> passed_B_m_;
 };
 
 /// The driver's process of one tool. What it had latched survives it.

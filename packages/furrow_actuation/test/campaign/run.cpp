@@ -192,7 +192,7 @@ class Run {
   }
 
   void plan(const TracksMessage& tracks) {
-    planner_.take(tracks);
+    planner_.take(tracks, world_.base());
     for (const auto& tool : tools_) {
       tool->inbox.plan.send(world_.now(), planner_.plan(tool->index, kTools));
     }
