@@ -100,13 +100,15 @@ Status add_decisions(const furrow_msgs::msg::RunRecord& message, std::span<const
   for (const auto& event : message.events()) {
     const auto kind = msgs::from_msg(event.event());
     if (!kind.ok()) return kind.error();
-    // A stop that a driver skipped is final: it overrides what the planner decides afterwards.
+    // What a driver did with a stop is final: it overrides what the planner decides afterwards. A
+    // valve that was opened and gave nothing is then a fault of the machine.
     const Reason reason = reason_of(*kind);
-    if (reason == Reason::kNone) continue;
+    const bool sprayed = *kind == msgs::AxisEventKind::kSprayed;
+    if (reason == Reason::kNone && !sprayed) continue;
     for (const std::int64_t track : event.track_ids()) {
       record.decisions.push_back({.time = graph::from_msg(message.header().stamp()),
                                   .track_id = track,
-                                  .action = Action::kLeave,
+                                  .action = sprayed ? Action::kTreat : Action::kLeave,
                                   .reason = reason,
                                   .axis = axis_index(axes, event.axis())});
     }

@@ -52,7 +52,7 @@ TEST(RunRecordConversion, EveryOtherDecisionLeavesForTheReasonOfTheSameName) {
 
 TEST(RunRecordConversion, SkippedStopLeavesItsTracks) {
   furrow_msgs::msg::RunRecord message;
-  for (const auto kind : {AxisEventKind::kSprayed, AxisEventKind::kReset, AxisEventKind::kStale}) {
+  for (const auto kind : {AxisEventKind::kReset, AxisEventKind::kStale}) {
     auto& event = message.events().emplace_back();
     event.event(msgs::to_msg(kind));
     event.axis("axis_1");
@@ -64,6 +64,21 @@ TEST(RunRecordConversion, SkippedStopLeavesItsTracks) {
   EXPECT_EQ(record->decisions[1].track_id, 5);
   EXPECT_EQ(record->decisions[1].action, Action::kLeave);
   EXPECT_EQ(record->decisions[1].reason, Reason::kStale);
+}
+
+TEST(RunRecordConversion, AnOpenedValveOverridesWhatThePlannerSaysAfterwards) {
+  auto message = record_of(DecisionKind::kUnreachable);
+  auto& event = message.events().emplace_back();
+  event.event(msgs::to_msg(AxisEventKind::kSprayed));
+  event.axis("axis_2");
+  event.track_ids({7});
+  const auto record = from_msg(message, kAxes);
+  ASSERT_TRUE(record.ok());
+  ASSERT_EQ(record->decisions.size(), 2u);
+  EXPECT_EQ(record->decisions[1].track_id, 7);
+  EXPECT_EQ(record->decisions[1].action, Action::kTreat);
+  EXPECT_EQ(record->decisions[1].reason, Reason::kNone);
+  EXPECT_EQ(record->decisions[1].axis, 1);
 }
 
 TEST(RunRecordConversion, UnknownValueIsAnError) {
