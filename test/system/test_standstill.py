@@ -3,6 +3,7 @@
 During a stop no cause is latched and nothing is sprayed. It costs no weed. The ledger shows the
 effects of valve faults."""
 
+import collections
 import json
 import unittest
 
@@ -21,6 +22,11 @@ THREE_STOPS = ([0, 7, 8, 13, 14, 16, 17, 22, 23, 25, 26, 31, 32, 300],
 def profile(times_s, speeds_mps):
     return ("--set", f"robot.profile_time_s={list(times_s)}",
             "--set", f"robot.profile_speed_mps={list(speeds_mps)}")
+
+
+def reasons(rows):
+    """How many weeds were missed for which reason."""
+    return collections.Counter(row["reason"] for row in rows if row["outcome"] == "missed")
 
 
 class StandstillTest(FurrowCase):
@@ -70,6 +76,10 @@ class ValveFaultTest(FurrowCase):
                 summary = self.with_fault(kind)
                 self.assertEqual(summary["sprays_by_axis"][1], 0)
                 self.assertGreater(summary["missed"], sound["missed"] + 5)
+                sound_by = reasons(self.ledger(self.folder / "sound"))
+                by = reasons(self.ledger(self.folder / kind))
+                self.assertEqual(by["unreachable"], sound_by["unreachable"], by)
+                self.assertGreater(by["fault"], sound_by["fault"] + 5, by)
 
     def test_a_valve_that_does_not_shut_is_told_by_sprays_without_a_command(self):
         for kind in ("stuck_open", "leaking"):
