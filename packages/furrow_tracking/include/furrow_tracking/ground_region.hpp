@@ -38,9 +38,9 @@ class GroundRegion {
   std::vector<Eigen::Vector2d> inward_normals_F_;
 };
 
-/// The visible ground: the image's outline, moved inwards by `border_px`, cast onto the plane at
-/// `ground_z_F_m`. kInvalidArgument: the border covers the image, or a corner looks at or above the
-/// horizon.
+/// The visible ground: the image's outline, moved inwards by `border_px` and projected onto the
+/// plane z = `ground_z_F_m`.
+/// - kInvalidArgument: the border covers the image, or the ray of a corner misses the ground.
 [[nodiscard]] Result<GroundRegion> visible_ground(const geometry::PinholeCamera& camera,
                                                   const Eigen::Isometry3d& X_FC,
                                                   double border_px = 0.0,
