@@ -163,7 +163,8 @@ std::vector<std::vector<const T*>> by_strip(const std::vector<T>& items, const L
 std::string map_svg_part(const Ledger& ledger, const RunRecord& record, double max_length_m) {
   Layout layout = make_map_layout(ledger, max_length_m);
   Markup legend;
-  const double legend_px = draw_map_legend(legend, ledger.summary, 0, 56, kWidth_px);
+  // Glyphs are up to 4 px wider than their column.
+  const double legend_px = draw_map_legend(legend, ledger.summary, 4, 56, kWidth_px - 4);
   layout.top_px = 56 + legend_px + 8;
   const double height_px = layout.strip_top_px(layout.strips) - Layout::kGap_px + 26;
 
