@@ -1,7 +1,7 @@
 #include "furrow_msgs/topics.hpp"
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 namespace furrow::msgs {
 namespace {
@@ -37,11 +37,10 @@ enum Row : std::size_t {
   kRunStatus,
   kRunRecord,
   kDiagnostics,
-  kRosout,
-  kRows
+  kRosout
 };
 
-// A stream of which gaps, and writers that died, are noticed and counted.
+// A stream whose gaps and lost writers are counted.
 constexpr Qos watched(Qos qos, Duration deadline) {
   qos.deadline = deadline;
   qos.liveliness_lease = Duration::milliseconds(100);
@@ -50,8 +49,9 @@ constexpr Qos watched(Qos qos, Duration deadline) {
 constexpr Duration kFastGap = Duration::milliseconds(100);
 constexpr Duration kPlanGap = Duration::milliseconds(1000);
 
-const std::array<Topic, kRows>& table() {
-  static const std::array<Topic, kRows> rows = {{
+// Sensors and pose of the robot.
+std::vector<Topic> robot_topics() {
+  return {
       {"clock", &message_type<topics::Clock::Message>(), sensor_stream_qos(10), 0, "",
        "Simulated time, as ROS 2 nodes with use_sim_time read it."},
       {"camera/image", &message_type<topics::CameraImage::Message>(), sensor_stream_qos(), 3,
@@ -71,30 +71,36 @@ const std::array<Topic, kRows>& table() {
        watched(reliable_stream_qos(50), kFastGap), 50, "field",
        "Pose X_FB of the base in the field frame, twist in the base frame."},
       {"tf", &message_type<topics::Transforms::Message>(), reliable_stream_qos(50), 50, "field",
-       "Transforms that move: field to base_link."},
+       "Moving transforms: field to base_link."},
       {"tf_static", &message_type<topics::StaticTransforms::Message>(), latched_qos(), 0,
-       "base_link", "Transforms that stand: base_link to the cameras' optical frames."},
+       "base_link", "Static transforms: base_link to the cameras' optical frames."},
       {"robot_description", &message_type<topics::RobotDescription::Message>(), latched_qos(), 0,
        "", "The URDF."},
+  };
+}
+
+// From the plants of an image to the sprays, and the safety of the tool.
+std::vector<Topic> weeding_topics() {
+  return {
       {"perception/instances", &message_type<topics::Instances::Message>(), reliable_stream_qos(5),
        3, "camera_optical",
        "The plants of one image: class, mask, box, stem (px and m), area (mm2)."},
       {"tracker/tracks", &message_type<topics::Tracks::Message>(), reliable_stream_qos(5), 3,
-       "field", "Every plant that is held in view or memory, refined over views; m, mm2."},
+       "field", "Every plant in view or in memory, refined over its views; m, mm2."},
       {"planner/plan", &message_type<topics::Plan::Message>(),
        watched(reliable_stream_qos(5), kPlanGap), 3, "field",
        "A route per axis and a decision for every track."},
       {"planner/heartbeat", &message_type<topics::PlannerHeartbeat::Message>(),
        watched(reliable_stream_qos(1), kFastGap), 50, "",
-       "That the planner is alive; without it the tools make themselves safe."},
+       "Liveness signal of the planner; without it the axes enter the safe state."},
       {"robot/speed_request", &message_type<topics::SpeedRequest::Message>(),
        reliable_stream_qos(1), 50, "base_link",
-       "The speed at which the tool keeps up with the weeds ahead, asked of the robot; m/s."},
+       "The speed at which the tool reaches the weeds ahead, a request to the robot; m/s."},
       {"axis/state", &message_type<topics::AxisState::Message>(),
        watched(reliable_stream_qos(50), kFastGap), 50, "",
        "Position, velocity and state of one axis; m, m/s."},
       {"axis/event", &message_type<topics::AxisEvent::Message>(), event_qos(), 0, "field",
-       "A spray that was made, a stop that was skipped and why, a tool made safe and why."},
+       "A spray, a skipped stop with its reason, or a safe state with its cause."},
       {"joint_states", &message_type<topics::JointStates::Message>(), reliable_stream_qos(50), 50,
        "", "The axes as ROS 2 shows them; m, m/s."},
       {"emergency_stop", &message_type<topics::EmergencyStop::Message>(), latched_qos(), 0, "",
@@ -105,23 +111,40 @@ const std::array<Topic, kRows>& table() {
        "Whether the tool is down and may work, or raised."},
       {"markers", &message_type<topics::Markers::Message>(), event_qos(), 3, "field",
        "Plants, plan and sprays as RViz draws them; m."},
+  };
+}
+
+// Ground truth of a simulation, and the state of the run.
+std::vector<Topic> run_topics() {
+  return {
       {"truth/odometry", &message_type<topics::TrueOdometry::Message>(), reliable_stream_qos(50),
        50, "field", "Simulation only: the true pose of the base."},
       {"truth/field", &message_type<topics::TrueField::Message>(), latched_qos(), 0, "field",
-       "Simulation only: the plants that are there; m, mm2."},
+       "Simulation only: all plants of the field; m, mm2."},
       {"truth/instances", &message_type<topics::TrueInstances::Message>(), reliable_stream_qos(5),
-       3, "camera_optical", "Simulation only: what a perfect detector would tell."},
+       3, "camera_optical", "Simulation only: the output of a perfect detector."},
       {"truth/spray", &message_type<topics::TrueSpray::Message>(), event_qos(), 0, "field",
        "Simulation only: where a spray landed; m."},
       {"run/status", &message_type<topics::RunStatus::Message>(), reliable_stream_qos(10), 5, "",
-       "How far the run is; the last one says finished."},
+       "Progress of the run; the last message says finished."},
       {"run/record", &message_type<topics::RunRecord::Message>(), latched_qos(), 0, "field",
-       "What the ledger is made of, once at the end."},
+       "The data of the ledger, once at the end."},
       {"diagnostics", &message_type<topics::Diagnostics::Message>(), reliable_stream_qos(50), 1, "",
        "Health of the components: level, message, counters."},
       {"rosout", &message_type<topics::Rosout::Message>(), rosout_qos(), 0, "",
        "The log: time, level, component, message."},
-  }};
+  };
+}
+
+// All topics, in the order of Row.
+const std::vector<Topic>& table() {
+  static const std::vector<Topic> rows = [] {
+    std::vector<Topic> all = robot_topics();
+    for (const auto& group : {weeding_topics(), run_topics()}) {
+      all.insert(all.end(), group.begin(), group.end());
+    }
+    return all;
+  }();
   return rows;
 }
 

@@ -60,7 +60,7 @@ TEST_F(Generator, MakesAnEnumClassWithItsComments) {
   EXPECT_NE(code.source.find("return \"safe_state\";"), std::string::npos);
 }
 
-TEST_F(Generator, RefusesWhatRosCannotRead) {
+TEST_F(Generator, RefusesTypesThatRos2CannotRead) {
   EXPECT_NE(error(in_module("struct A { long x; };")).find("must be '@final struct'"),
             std::string::npos);
   EXPECT_NE(error("module other { @final struct A { long x; }; };").find("module msg"),

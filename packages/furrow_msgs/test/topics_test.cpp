@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
 
 namespace furrow::msgs {
 namespace {
@@ -20,14 +21,28 @@ TEST(Topics, NamesAreUniqueAndPlain) {
   EXPECT_EQ(find_topic("nothing"), nullptr);
 }
 
+template <class... Structs>
+void expect_rows_in_order() {
+  const std::vector<const Topic*> rows = {&Structs::topic()...};
+  const std::vector<const MessageType*> types = {&message_type<typename Structs::Message>()...};
+  ASSERT_EQ(rows.size(), all_topics().size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i], &all_topics()[i]) << all_topics()[i].name;
+    EXPECT_EQ(rows[i]->type, types[i]) << rows[i]->name;
+  }
+}
+
 TEST(Topics, StructsFindTheirRow) {
+  namespace t = topics;
+  expect_rows_in_order<t::Clock, t::CameraImage, t::CameraDepth, t::CameraInfo, t::WheelOdometry,
+                       t::Imu, t::GnssFix, t::RobotOdometry, t::Transforms, t::StaticTransforms,
+                       t::RobotDescription, t::Instances, t::Tracks, t::Plan, t::PlannerHeartbeat,
+                       t::SpeedRequest, t::AxisState, t::AxisEvent, t::JointStates,
+                       t::EmergencyStop, t::ToolReset, t::ToolEnable, t::Markers, t::TrueOdometry,
+                       t::TrueField, t::TrueInstances, t::TrueSpray, t::RunStatus, t::RunRecord,
+                       t::Diagnostics, t::Rosout>();
   EXPECT_EQ(topics::Plan::topic().name, "planner/plan");
-  EXPECT_EQ(topics::Plan::topic().type, &message_type<topics::Plan::Message>());
-  EXPECT_EQ(topics::RobotDescription::topic().name, "robot_description");
-  EXPECT_EQ(topics::Instances::topic().name, "perception/instances");
-  EXPECT_EQ(topics::Markers::topic().name, "markers");
-  EXPECT_EQ(topics::TrueOdometry::topic().name, "truth/odometry");
-  EXPECT_EQ(topics::Rosout::topic().name, "rosout");
+  EXPECT_EQ(topics::Diagnostics::topic().name, "diagnostics");
   EXPECT_EQ(all_topics().back().name, "rosout");
 }
 
