@@ -56,6 +56,58 @@ std::uint32_t mix(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return h ^ (h >> 15);
 }
 
+// Blurs one row of a picture, vertically and then horizontally. The result is in 256ths in `sum`.
+// `between` keeps the row between the passes, which repeats its first and last pixel at its ends.
+void blur_row(const cv::Mat& source, const std::vector<std::int16_t>& vertical,
+              const std::vector<std::int16_t>& horizontal, int v,
+              std::vector<std::uint8_t>& between, std::vector<std::uint16_t>& sum) {
+  const int count = 3 * source.cols;
+  const int radius_v = static_cast<int>(vertical.size() / 2);
+  const int radius_h = static_cast<int>(horizontal.size() / 2);
+  std::fill(sum.begin(), sum.end(), std::uint16_t{128});
+  for (int k = -radius_v; k <= radius_v; ++k) {
+    const auto* row = source.ptr<std::uint8_t>(std::clamp(v + k, 0, source.rows - 1));
+    const auto weight = static_cast<std::uint16_t>(vertical[k + radius_v]);
+    std::uint16_t* out = sum.data();
+    for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(out[i] + weight * row[i]);
+  }
+  std::uint8_t* middle = between.data() + 3 * static_cast<std::ptrdiff_t>(radius_h);
+  for (int i = 0; i < count; ++i) middle[i] = static_cast<std::uint8_t>(sum[i] >> 8);
+  for (int i = 0; i < 3 * radius_h; ++i) {
+    between[i] = middle[i % 3];
+    middle[count + i] = middle[count - 3 + i % 3];
+  }
+  std::fill(sum.begin(), sum.end(), std::uint16_t{128});
+  for (int k = 0; k <= 2 * radius_h; ++k) {
+    const std::uint8_t* row = between.data() + 3 * static_cast<std::ptrdiff_t>(k);
+    const auto weight = static_cast<std::uint16_t>(horizontal[k]);
+    std::uint16_t* out = sum.data();
+    for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(out[i] + weight * row[i]);
+  }
+}
+
+// Applies vignetting and noise to a blurred row. Gains are in 256ths; noise grows with brightness.
+void write_row(const std::vector<std::uint16_t>& sum, const std::vector<std::uint16_t>& fall,
+               std::uint16_t row_gain, const std::int8_t* noise, double image_noise,
+               std::uint8_t* out) {
+  const auto amplitude =
+      static_cast<std::int16_t>(std::lround(std::clamp(image_noise, 0.0, 7.0) * 32.0));
+  const auto amplitude_dark = static_cast<std::int16_t>(amplitude * 2 / 3);
+  const auto amplitude_slope = static_cast<std::int16_t>(amplitude * 2 / 3);  // per 256
+  const int count = static_cast<int>(sum.size());
+  for (int i = 0; i < count; ++i) {
+    const auto value = static_cast<std::uint16_t>(sum[i] >> 8);
+    const auto dimmed = static_cast<std::int16_t>(
+        static_cast<std::uint16_t>(value * static_cast<std::uint16_t>(row_gain - fall[i])) >> 8);
+    const auto gain = static_cast<std::int16_t>(
+        amplitude_dark + (static_cast<std::int16_t>(dimmed >> 1) * amplitude_slope >> 7));
+    const auto noisy = static_cast<std::int16_t>(
+        dimmed + (static_cast<std::int16_t>(noise[i] * std::min<std::int16_t>(gain, 255)) >> 10));
+    out[i] = static_cast<std::uint8_t>(
+        std::clamp<std::int16_t>(noisy, std::int16_t{0}, std::int16_t{255}));
+  }
+}
+
 }  // namespace
 
 CameraEffectParameters CameraEffectParameters::none() {
@@ -148,9 +200,7 @@ void CameraEffects::filter_rows(const cv::Mat& source, cv::Mat& target, std::uin
   const int count = 3 * source.cols;
   const auto& vertical = motion_along_columns ? motion_kernel_ : lens_kernel_;
   const auto& horizontal = motion_along_columns ? lens_kernel_ : motion_kernel_;
-  const int radius_v = static_cast<int>(vertical.size() / 2);
   const int radius_h = static_cast<int>(horizontal.size() / 2);
-  // The row between the passes repeats its first and last pixel on either side.
   std::vector<std::uint8_t> between(static_cast<std::size_t>(count + 6 * radius_h));
   std::vector<std::uint16_t> sum(static_cast<std::size_t>(count));
   std::vector<std::uint16_t> fall(static_cast<std::size_t>(count));
@@ -162,49 +212,15 @@ void CameraEffects::filter_rows(const cv::Mat& source, cv::Mat& target, std::uin
     const double dx = column + 0.5 - half_x;
     fall[i] = static_cast<std::uint16_t>(scale * dx * dx);
   }
-  const auto amplitude =
-      static_cast<std::int16_t>(std::lround(std::clamp(parameters_.image_noise, 0.0, 7.0) * 32.0));
-  const auto amplitude_dark = static_cast<std::int16_t>(amplitude * 2 / 3);
-  const auto amplitude_slope = static_cast<std::int16_t>(amplitude * 2 / 3);  // per 256
   for (int v = first; v < last; ++v) {
-    std::fill(sum.begin(), sum.end(), std::uint16_t{128});
-    for (int k = -radius_v; k <= radius_v; ++k) {
-      const auto* row = source.ptr<std::uint8_t>(std::clamp(v + k, 0, source.rows - 1));
-      const auto weight = static_cast<std::uint16_t>(vertical[k + radius_v]);
-      std::uint16_t* out = sum.data();
-      for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(out[i] + weight * row[i]);
-    }
-    std::uint8_t* middle = between.data() + 3 * static_cast<std::ptrdiff_t>(radius_h);
-    for (int i = 0; i < count; ++i) middle[i] = static_cast<std::uint8_t>(sum[i] >> 8);
-    for (int i = 0; i < 3 * radius_h; ++i) {
-      between[i] = middle[i % 3];
-      middle[count + i] = middle[count - 3 + i % 3];
-    }
-    std::fill(sum.begin(), sum.end(), std::uint16_t{128});
-    for (int k = 0; k <= 2 * radius_h; ++k) {
-      const std::uint8_t* row = between.data() + 3 * static_cast<std::ptrdiff_t>(k);
-      const auto weight = static_cast<std::uint16_t>(horizontal[k]);
-      std::uint16_t* out = sum.data();
-      for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(out[i] + weight * row[i]);
-    }
+    blur_row(source, vertical, horizontal, v, between, sum);
     const double dy = v + 0.5 - half_y;
     const auto row_gain = static_cast<std::uint16_t>(256.0 - scale * dy * dy);
     const std::uint32_t place =
         mix(static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(frame_index), v);
     const std::int8_t* noise =
         noise_.data() + place % static_cast<std::uint32_t>(kNoiseSize - count);
-    auto* out = target.ptr<std::uint8_t>(v);
-    for (int i = 0; i < count; ++i) {
-      const auto value = static_cast<std::uint16_t>(sum[i] >> 8);
-      const auto dimmed = static_cast<std::int16_t>(
-          static_cast<std::uint16_t>(value * static_cast<std::uint16_t>(row_gain - fall[i])) >> 8);
-      const auto gain = static_cast<std::int16_t>(
-          amplitude_dark + (static_cast<std::int16_t>(dimmed >> 1) * amplitude_slope >> 7));
-      const auto noisy = static_cast<std::int16_t>(
-          dimmed + (static_cast<std::int16_t>(noise[i] * std::min<std::int16_t>(gain, 255)) >> 10));
-      out[i] = static_cast<std::uint8_t>(
-          std::clamp<std::int16_t>(noisy, std::int16_t{0}, std::int16_t{255}));
-    }
+    write_row(sum, fall, row_gain, noise, parameters_.image_noise, target.ptr<std::uint8_t>(v));
   }
 }
 

@@ -7,48 +7,13 @@
 #include "furrow_core/error.hpp"
 #include "ground_region.hpp"
 #include "noise.hpp"
-#include "raster.hpp"
 
 namespace furrow::simulation {
 namespace {
 
-constexpr int kMargin = 12;     // for gradients and the sky seen
-constexpr int kSunMargin = 44;  // towards the sun: the longest shadow of a clod
-constexpr int kSkyRadius = 6;
-constexpr int kCanopyRadius = 9;
-
-void box_blur(std::vector<float>& image, int rows, int columns, int radius,
-              std::vector<float>& scratch) {
-  scratch.resize(image.size());
-  const float scale = 1.0f / static_cast<float>(2 * radius + 1);
-  for (int row = 0; row < rows; ++row) {
-    const float* in = image.data() + static_cast<std::ptrdiff_t>(row) * columns;
-    float* out = scratch.data() + static_cast<std::ptrdiff_t>(row) * columns;
-    float sum = 0.0f;
-    for (int k = -radius; k <= radius; ++k) sum += in[std::clamp(k, 0, columns - 1)];
-    for (int column = 0; column < columns; ++column) {
-      out[column] = sum * scale;
-      sum += in[std::min(column + radius + 1, columns - 1)] - in[std::max(column - radius, 0)];
-    }
-  }
-  std::vector<float> sums(static_cast<std::size_t>(columns), 0.0f);
-  const auto line = [&](int row) {
-    return scratch.data() + static_cast<std::ptrdiff_t>(std::clamp(row, 0, rows - 1)) * columns;
-  };
-  for (int k = -radius; k <= radius; ++k) {
-    const float* in = line(k);
-    for (int column = 0; column < columns; ++column) sums[column] += in[column];
-  }
-  for (int row = 0; row < rows; ++row) {
-    float* out = image.data() + static_cast<std::ptrdiff_t>(row) * columns;
-    const float* enter = line(row + radius + 1);
-    const float* leave = line(row - radius);
-    for (int column = 0; column < columns; ++column) {
-      out[column] = sums[column] * scale;
-      sums[column] += enter[column] - leave[column];
-    }
-  }
-}
+// Texels around a block. The margin towards the sun is as long as the longest shadow of a clod.
+constexpr int kMargin = 12;
+constexpr int kSunMargin = 44;
 
 }  // namespace
 
@@ -63,7 +28,8 @@ void GroundParameters::visit(ParameterVisitor& v) {
   };
   share("moisture", "0 dry and light, 1 wet and dark", moisture, 1.0);
   share("moisture_patchiness", "how unevenly the soil has dried", moisture_patchiness, 1.0);
-  share("color_variation", "of soil colour from place to place", color_variation, 1.0);
+  share("color_variation", "variation of the soil's colour from place to place", color_variation,
+        1.0);
   v.visit({.name = "undulation_mm",
            .unit = "mm",
            .description = "height of the smooth waves of the ground, up and down",
@@ -93,7 +59,7 @@ void GroundParameters::visit(ParameterVisitor& v) {
           straw_per_m2);
   v.visit({.name = "crack_depth_mm",
            .unit = "mm",
-           .description = "of drying cracks; 0: none",
+           .description = "depth of drying cracks; 0: none",
            .min = 0.0,
            .max = 20.0},
           crack_depth_mm);
@@ -146,7 +112,7 @@ void Ground::make_block(std::int32_t block_x, std::int32_t block_y,
                         const std::vector<ShadowTriangle>& casters, GroundBlock& block) const {
   const Eigen::Vector3f& sun = light_.to_sun();
   const auto margin = [](bool towards_sun) { return towards_sun ? kSunMargin : kMargin; };
-  Region region;
+  GroundRegion region;
   region.block_row = margin(sun.x() < -0.02f);
   region.block_column = margin(sun.y() < -0.02f);
   region.first_x = block_x * GroundBlock::kSize - region.block_row;
@@ -160,14 +126,16 @@ void Ground::make_block(std::int32_t block_x, std::int32_t block_y,
   region.tint.resize(count);
   region.material.assign(count, Material::kSoil);
   add_noise(region);
+  add_smooth_ground(region);
   add_cracks(region);
-  stamp_objects(region);
-  cast_shadows(region, casters);
+  add_lumps(region);
+  add_straw(region);
+  cast_shadows(region, casters, sun, texel_m_);
   block.texels.resize(static_cast<std::size_t>(GroundBlock::kSize) * GroundBlock::kSize);
   shade(region, block);
 }
 
-void Ground::add_noise(Region& region) const {
+void Ground::add_noise(GroundRegion& region) const {
   const auto roughness = static_cast<float>(parameters_.roughness_mm);
   // Crumbly soil is also uneven between its crumbs.
   const auto unevenness = static_cast<float>(1.2 + 2.5 * parameters_.clod_cover);
@@ -193,7 +161,10 @@ void Ground::add_noise(Region& region) const {
       if (++coarse_column == kCoarseTileSize) coarse_column = 0;
     }
   }
-  // The smooth ground is computed at every eighth texel of F and interpolated.
+}
+
+void Ground::add_smooth_ground(GroundRegion& region) const {
+  // Computed at every eighth texel of F and interpolated, because the noise is expensive.
   constexpr int kStep = 8;
   const auto floor_step = [](int v) { return (v + kTexelLift) / kStep - kTexelLift / kStep; };
   const int gx = floor_step(region.first_x);
@@ -223,150 +194,62 @@ void Ground::add_noise(Region& region) const {
   }
 }
 
-void Ground::cast_shadows(Region& region, const std::vector<ShadowTriangle>& casters) const {
-  const Eigen::Vector3f& sun = light_.to_sun();
-  const auto mm = static_cast<float>(1e3 * texel_m_);
-  const std::size_t count = region.relief_mm.size();
-  region.sun.assign(count, 1.0f);
-  region.sky.assign(count, 1.0f);
-  std::vector<float> scratch;
-
-  // Plants, dropped on the ground along the sun's rays and straight down.
-  const auto texel = static_cast<float>(1.0 / texel_m_);
-  const Eigen::Vector2f origin(static_cast<float>(region.first_y),
-                               static_cast<float>(region.first_x));
-  const float ground_m = 1e-3f * region.base_mm[region.at(region.rows / 2, region.columns / 2)];
-  std::vector<float> canopy;
-  if (!casters.empty()) {
-    canopy.assign(count, 0.0f);
-    for (const ShadowTriangle& triangle : casters) {
-      Eigen::Vector2f along[3];
-      Eigen::Vector2f down[3];
-      for (int i = 0; i < 3; ++i) {
-        const Eigen::Vector3f& p = triangle.corner[i];
-        const float drop = std::max(p.z() - ground_m, 0.0f) / sun.z();
-        down[i] = Eigen::Vector2f(p.y(), p.x()) * texel - origin;
-        along[i] = Eigen::Vector2f(p.y() - drop * sun.y(), p.x() - drop * sun.x()) * texel - origin;
-      }
-      const auto fill = [&](const Eigen::Vector2f* corner, std::vector<float>& mask, float value) {
-        scan_triangle(corner[0], corner[1], corner[2], region.columns, 0, region.rows,
-                      [&](int row, int first, int end) {
-                        std::fill(
-                            mask.begin() + static_cast<std::ptrdiff_t>(region.at(row, first)),
-                            mask.begin() + static_cast<std::ptrdiff_t>(region.at(row, end - 1)) + 1,
-                            value);
-                      });
-      };
-      fill(along, region.sun, 0.06f);
-      fill(down, canopy, 1.0f);
-    }
-    box_blur(region.sun, region.rows, region.columns, 1, scratch);
-    box_blur(canopy, region.rows, region.columns, kCanopyRadius, scratch);
+Eigen::Vector3f Ground::albedo(const GroundRegion& region, std::size_t texel, float patch) const {
+  const auto moisture = static_cast<float>(parameters_.moisture);
+  const float value = region.value[texel];
+  const float tint = region.tint[texel];
+  if (region.material[texel] == Material::kStone) {
+    const Eigen::Vector3f stone(0.30f, 0.28f, 0.25f);
+    return stone.cwiseProduct(Eigen::Vector3f(1.0f + 0.12f * tint, 1.0f, 1.0f - 0.14f * tint)) *
+           (value * (1.0f - 0.4f * moisture));
   }
-
-  // The relief's own shadows: the height of the shade is carried away from the sun, line by line
-  // of the axis that lies nearer to the sun's direction.
-  const bool by_rows = std::abs(sun.x()) >= std::abs(sun.y());
-  const float major = by_rows ? sun.x() : sun.y();
-  const float minor = by_rows ? sun.y() : sun.x();
-  if (std::abs(major) > 0.02f) {
-    const int lines = by_rows ? region.rows : region.columns;
-    const int length = by_rows ? region.columns : region.rows;
-    const std::ptrdiff_t line_stride = by_rows ? region.columns : 1;
-    const std::ptrdiff_t stride = by_rows ? 1 : region.columns;
-    const float sideways = minor / std::abs(major);  // towards the sun, per line
-    const float drop = mm * sun.z() / std::abs(major);
-    const int from = major > 0.0f ? lines - 1 : 0;
-    const int step = major > 0.0f ? -1 : 1;
-    const auto whole = static_cast<int>(std::floor(sideways));
-    const float part = sideways - static_cast<float>(whole);
-    std::vector<float> shade_height(static_cast<std::size_t>(length) + 4, -1e6f);
-    std::vector<float> next(shade_height);
-    for (int n = 0; n < lines; ++n) {
-      const std::ptrdiff_t line = static_cast<std::ptrdiff_t>(from + step * n) * line_stride;
-      for (int k = 0; k < length; ++k) {
-        const std::ptrdiff_t i = line + k * stride;
-        const float height = region.relief_mm[i];
-        const float a =
-            shade_height[static_cast<std::size_t>(std::clamp(k + whole + 2, 0, length + 3))];
-        const float b =
-            shade_height[static_cast<std::size_t>(std::clamp(k + whole + 3, 0, length + 3))];
-        const float shadow = a + (b - a) * part - drop;
-        const float dark = std::clamp((shadow - height) * 1.2f, 0.0f, 1.0f);
-        region.sun[i] *= 1.0f - dark;
-        next[static_cast<std::size_t>(k) + 2] = std::max(shadow, height);
-      }
-      std::swap(shade_height, next);
-    }
+  if (region.material[texel] == Material::kStraw) {
+    const Eigen::Vector3f straw(0.50f, 0.40f, 0.21f);
+    return straw.cwiseProduct(Eigen::Vector3f(1.0f + 0.1f * tint, 1.0f, 1.0f - 0.2f * tint)) *
+           (value * (1.0f - 0.35f * moisture));
   }
-
-  // Hollows see less of the sky, and so does the ground under a canopy.
-  std::vector<float> mean = region.relief_mm;
-  box_blur(mean, region.rows, region.columns, kSkyRadius, scratch);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float hollow = (mean[i] - region.relief_mm[i]) / (2.0f + 0.2f * std::abs(mean[i]));
-    region.sky[i] = 1.0f - std::clamp(0.30f * hollow, -0.12f, 0.55f);
-  }
-  for (std::size_t i = 0; i < canopy.size(); ++i) region.sky[i] *= 1.0f - 0.6f * canopy[i];
+  const auto patchiness = static_cast<float>(parameters_.moisture_patchiness);
+  const auto variation = static_cast<float>(parameters_.color_variation);
+  // Tops dry first.
+  const float wetness = std::clamp(
+      moisture + patchiness * (0.9f * patch - 0.05f * region.relief_mm[texel]) * (0.25f + moisture),
+      0.0f, 1.0f);
+  const float red = 1.0f + 0.10f * variation * tint;
+  Eigen::Vector3f soil = soil_linear_.cwiseProduct(Eigen::Vector3f(red, 1.0f, 1.0f / red)) *
+                         (value * (1.0f + 0.25f * variation * patch));
+  soil *= 1.0f - 0.62f * wetness;
+  soil.z() *= 1.0f - 0.18f * wetness;
+  return soil;
 }
 
-void Ground::shade(const Region& region, GroundBlock& block) const {
-  const GroundParameters& p = parameters_;
+void Ground::shade(const GroundRegion& region, GroundBlock& block) const {
   const float inverse = static_cast<float>(0.5 / (1e3 * texel_m_));
-  const auto moisture = static_cast<float>(p.moisture);
-  const auto patchiness = static_cast<float>(p.moisture_patchiness);
-  const auto variation = static_cast<float>(p.color_variation);
+  const Eigen::Vector3f& sun = light_.to_sun();
   // Patches of colour are three times as wide as the tile's waves.
   std::array<int, GroundBlock::kSize> patch_column{};
   for (int c = 0; c < GroundBlock::kSize; ++c) {
     const int y = c + region.block_column + region.first_y + kTexelLift;
     patch_column[static_cast<std::size_t>(c)] = (y / 3) % kCoarseTileSize;
   }
-  const Eigen::Vector3f stone(0.30f, 0.28f, 0.25f);
-  const Eigen::Vector3f straw(0.50f, 0.40f, 0.21f);
   for (int r = 0; r < GroundBlock::kSize; ++r) {
     const int row = r + region.block_row;
     const int x = row + region.first_x + kTexelLift;
     const float* coarse = tile_row(coarse_tile_, kCoarseTileSize, x / 3);
     for (int c = 0; c < GroundBlock::kSize; ++c) {
-      const int column = c + region.block_column;
-      const std::size_t i = region.at(row, column);
+      const std::size_t i = region.at(row, c + region.block_column);
       const auto height = [&](std::size_t k) { return region.relief_mm[k] + region.base_mm[k]; };
       const float slope_x = (height(i + region.columns) - height(i - region.columns)) * inverse;
       const float slope_y = (height(i + 1) - height(i - 1)) * inverse;
       const float norm = 1.0f / std::sqrt(1.0f + slope_x * slope_x + slope_y * slope_y);
-      const Eigen::Vector3f& sun = light_.to_sun();
       const float facing = std::max((sun.z() - slope_x * sun.x() - slope_y * sun.y()) * norm, 0.0f);
-
-      Eigen::Vector3f albedo;
-      float wetness = 0.0f;
-      const float tint = region.tint[i];
-      if (region.material[i] == Material::kSoil) {
-        const float patch = coarse[patch_column[static_cast<std::size_t>(c)]];
-        // Tops dry first.
-        wetness = std::clamp(moisture + patchiness * (0.9f * patch - 0.05f * region.relief_mm[i]) *
-                                            (0.25f + moisture),
-                             0.0f, 1.0f);
-        const float red = 1.0f + 0.10f * variation * tint;
-        albedo = soil_linear_.cwiseProduct(Eigen::Vector3f(red, 1.0f, 1.0f / red)) *
-                 (region.value[i] * (1.0f + 0.25f * variation * patch));
-        albedo *= 1.0f - 0.62f * wetness;
-        albedo.z() *= 1.0f - 0.18f * wetness;
-      } else if (region.material[i] == Material::kStone) {
-        albedo =
-            stone.cwiseProduct(Eigen::Vector3f(1.0f + 0.12f * tint, 1.0f, 1.0f - 0.14f * tint)) *
-            (region.value[i] * (1.0f - 0.4f * moisture));
-      } else {
-        albedo = straw.cwiseProduct(Eigen::Vector3f(1.0f + 0.1f * tint, 1.0f, 1.0f - 0.2f * tint)) *
-                 (region.value[i] * (1.0f - 0.35f * moisture));
-      }
+      const float patch = coarse[patch_column[static_cast<std::size_t>(c)]];
       const Eigen::Vector3f sky = light_.sky_rgb() * (region.sky[i] * 0.5f * (1.0f + norm));
       const Eigen::Vector3f direct = light_.sun_rgb() * (facing * region.sun[i]);
       const Eigen::Vector3f total = sky + direct;
-      const Eigen::Vector3f bgr = light_.encode_bgr(albedo.cwiseProduct(total));
-      GroundTexel& texel = block.texels[static_cast<std::size_t>(r) * GroundBlock::kSize + c];
+      const Eigen::Vector3f bgr = light_.encode_bgr(albedo(region, i, patch).cwiseProduct(total));
       const float shade = 255.0f * std::sqrt(std::min(sky.y() / std::max(total.y(), 1e-6f), 1.0f));
       const auto byte = [](float value) { return static_cast<std::uint32_t>(std::lrint(value)); };
+      GroundTexel& texel = block.texels[static_cast<std::size_t>(r) * GroundBlock::kSize + c];
       texel.bgrs = byte(bgr.x()) | byte(bgr.y()) << 8 | byte(bgr.z()) << 16 | byte(shade) << 24;
       texel.height_64um = static_cast<std::int16_t>(
           std::clamp(height(i) * (1e-3f / GroundBlock::kHeightUnit_m), -32000.0f, 32000.0f));

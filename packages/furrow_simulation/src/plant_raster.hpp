@@ -29,14 +29,14 @@ struct PlacedPlant {
   std::int64_t visible_px = 0;
 };
 
-/// Nothing when no part of the plant can be in the image. `sway_F` is how far a leaf is blown aside
-/// for each metre above the ground.
+/// nullopt when no part of the plant can be in the image. `sway_F` is the displacement of a leaf by
+/// wind, in m for each metre above the ground.
 [[nodiscard]] std::optional<PlacedPlant> place_plant(const View& view, const BuiltPlant& plant,
                                                      std::size_t plant_index,
                                                      const Eigen::Vector2f& sway_F);
 
-/// Draws rows [first_row, end_row): colours, inverse depths into frame.depth_m, and `local_index`
-/// into frame.plant_index, where the plant is nearer than what is there.
+/// Draws rows [first_row, end_row) wherever the plant is nearer than earlier plants: colours,
+/// inverse depths (1/m) into frame.depth_m, and `local_index` into frame.plant_index.
 void draw_plant(const PlacedPlant& plant, std::int32_t local_index, const LeafTexture& texture,
                 const RobotShadow& shadow, Frame& frame, int first_row, int end_row);
 

@@ -121,23 +121,42 @@ class Renderer::Implementation {
 
     std::mutex merging;
     parallel_bands(intrinsics.height_px, threads, [&](int first, int end) {
-      std::vector<std::int64_t> visible(placed.size(), 0);
-      for (std::size_t i = 0; i < placed.size(); ++i) {
-        draw_plant(placed[i], static_cast<std::int32_t>(i), texture_, shadow, frame, first, end);
-      }
-      RowHits hits(intrinsics.width_px);
-      for (int v = first; v < end; ++v) {
-        if (above_ground) {
-          finish_row(view, window, shadow, placed, v, frame, hits, visible);
-        } else {
-          auto* row = frame.bgr.ptr<cv::Vec3b>(v);
-          std::fill(row, row + frame.bgr.cols, cv::Vec3b(kSky_bgr[0], kSky_bgr[1], kSky_bgr[2]));
-        }
-      }
+      const std::vector<std::int64_t> visible =
+          draw_rows(view, above_ground ? &window : nullptr, shadow, placed, first, end, frame);
       const std::lock_guard lock(merging);
       for (std::size_t i = 0; i < placed.size(); ++i) placed[i].visible_px += visible[i];
     });
+    list_plants(placed, frame);
+    const Eigen::Vector3d travel_C = X_FC.linear().transpose() * Eigen::Vector3d::UnitX();
+    effects_.apply(frame.bgr, frame.depth_m, frame_index,
+                   std::abs(travel_C.y()) >= std::abs(travel_C.x()), threads);
+    return owning(std::move(frame));
+  }
 
+ private:
+  // Draws rows [first, end) and returns the visible pixels of each plant. Without a window the
+  // camera is below the ground and sees the sky.
+  std::vector<std::int64_t> draw_rows(const View& view, const GroundAtlas::Window* window,
+                                      const RobotShadow& shadow,
+                                      const std::vector<PlacedPlant>& placed, int first, int end,
+                                      Frame& frame) const {
+    std::vector<std::int64_t> visible(placed.size(), 0);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      draw_plant(placed[i], static_cast<std::int32_t>(i), texture_, shadow, frame, first, end);
+    }
+    RowHits hits(view.intrinsics().width_px);
+    for (int v = first; v < end; ++v) {
+      if (window) {
+        finish_row(view, *window, shadow, placed, v, frame, hits, visible);
+      } else {
+        auto* row = frame.bgr.ptr<cv::Vec3b>(v);
+        std::fill(row, row + frame.bgr.cols, cv::Vec3b(kSky_bgr[0], kSky_bgr[1], kSky_bgr[2]));
+      }
+    }
+    return visible;
+  }
+
+  void list_plants(const std::vector<PlacedPlant>& placed, Frame& frame) const {
     for (const PlacedPlant& plant : placed) {
       if (plant.visible_px == 0) continue;
       frame.plants.push_back({.plant_index = plant.plant_index,
@@ -146,13 +165,8 @@ class Renderer::Implementation {
                               .area_mm2 = plant.built->mesh.top_area_mm2,
                               .stem_px = plant.stem_px});
     }
-    const Eigen::Vector3d travel_C = X_FC.linear().transpose() * Eigen::Vector3d::UnitX();
-    effects_.apply(frame.bgr, frame.depth_m, frame_index,
-                   std::abs(travel_C.y()) >= std::abs(travel_C.x()), threads);
-    return owning(std::move(frame));
   }
 
- private:
   // Copies what the frame still shares with the buffers.
   [[nodiscard]] Frame owning(Frame frame) const {
     if (frame.bgr.data == bgr_.data) frame.bgr = bgr_.clone();
@@ -257,7 +271,7 @@ class Renderer::Implementation {
     }
   }
 
-  // Turns inverse depths and places in `placed` into the frame's values, and fills the ground in.
+  // Replaces inverse depths and indices into `placed` by the frame's values, and draws the ground.
   void finish_row(const View& view, const GroundAtlas::Window& window, const RobotShadow& shadow,
                   const std::vector<PlacedPlant>& placed, int v, Frame& frame, RowHits& hits,
                   std::vector<std::int64_t>& visible) const {
@@ -267,10 +281,6 @@ class Renderer::Implementation {
     auto* depth = frame.depth_m.ptr<float>(v);
     auto* index = frame.plant_index.ptr<std::int32_t>(v);
     const float unit = GroundBlock::kHeightUnit_m / static_cast<float>(view.position().z());
-    const std::int32_t limit_x = (window.last_x - window.first_x - 1) * 256;
-    const std::int32_t limit_y = (window.last_y - window.first_y - 1) * 256;
-    const std::int32_t first_x = window.first_x;
-    const std::int32_t first_y = window.first_y;
     const bool shaded = shadow.enabled();
     const int width = frame.bgr.cols;
     for (int u = 0; u < width; ++u) {
@@ -282,46 +292,60 @@ class Renderer::Implementation {
         continue;
       }
       std::uint8_t* out = bgr + 3 * static_cast<std::ptrdiff_t>(u);
-      std::int32_t x = hits.x[u];
-      std::int32_t y = hits.y[u];
-      if (x < 256 || y < 256 || x >= limit_x || y >= limit_y) {
+      std::int32_t height = 0;
+      std::uint8_t shade = 0;
+      if (!sample_ground(ground, window, hits, u, out, height, shade)) {
         std::copy(kSky_bgr.begin(), kSky_bgr.end(), out);
         continue;
       }
-      // One step of the intersection with the uneven ground.
-      const std::int32_t height =
-          ground.texel(first_x + ((x + 128) >> 8), first_y + ((y + 128) >> 8)).height_64um;
-      x = std::clamp(x + (height * hits.rise_x[u] >> 10), 0, limit_x);
-      y = std::clamp(y + (height * hits.rise_y[u] >> 10), 0, limit_y);
-      const std::int32_t whole_x = x >> 8;
-      const std::int32_t whole_y = y >> 8;
-      const auto part_x = static_cast<std::uint32_t>(x & 255);
-      const auto part_y = static_cast<std::uint32_t>(y & 255);
-      const GroundTexel* near_row = ground.row(first_x + whole_x);
-      const GroundTexel* far_row = ground.row(first_x + whole_x + 1);
-      const std::ptrdiff_t left = ground.column(first_y + whole_y);
-      const std::ptrdiff_t right = ground.column(first_y + whole_y + 1);
-      const GroundTexel& a = near_row[left];
-      const std::uint32_t weight_d = part_x * part_y >> 8;
-      const std::uint32_t weight_c = part_x - weight_d;
-      const std::uint32_t weight_b = part_y - weight_d;
-      const std::uint32_t weight_a = 256 - part_x - weight_b;
-      // Four channels at once, each in 16 bits: the weights sum to 256.
-      const std::uint64_t sum = spread(a) * weight_a + spread(near_row[right]) * weight_b +
-                                spread(far_row[left]) * weight_c +
-                                spread(far_row[right]) * weight_d;
-      out[0] = static_cast<std::uint8_t>(sum >> 8);
-      out[1] = static_cast<std::uint8_t>(sum >> 40);
-      out[2] = static_cast<std::uint8_t>(sum >> 24);
-      depth[u] = hits.depth[u] * (1.0f - unit * static_cast<float>(a.height_64um));
+      depth[u] = hits.depth[u] * (1.0f - unit * static_cast<float>(height));
       if (shaded) {
-        const auto shade = static_cast<float>(static_cast<std::uint8_t>(sum >> 56));
-        const float gain = shadow.gain(u, v, shade * (1.0f / 255.0f));
+        const float gain = shadow.gain(u, v, static_cast<float>(shade) * (1.0f / 255.0f));
         for (int k = 0; k < 3; ++k) {
           out[k] = static_cast<std::uint8_t>(static_cast<float>(out[k]) * gain);
         }
       }
     }
+  }
+
+  // The ground that pixel `u` of a row sees: colour, height in units of kHeightUnit_m, and shade.
+  // false: the ray leaves the window. Inline, because the call would cost more than the sample.
+  static inline bool sample_ground(const GroundAtlas::Reader& ground,
+                                   const GroundAtlas::Window& window, const RowHits& hits, int u,
+                                   std::uint8_t* bgr, std::int32_t& height, std::uint8_t& shade) {
+    const std::int32_t limit_x = (window.last_x - window.first_x - 1) * 256;
+    const std::int32_t limit_y = (window.last_y - window.first_y - 1) * 256;
+    std::int32_t x = hits.x[u];
+    std::int32_t y = hits.y[u];
+    if (x < 256 || y < 256 || x >= limit_x || y >= limit_y) return false;
+    // One step of the intersection with the uneven ground.
+    const std::int32_t rise =
+        ground.texel(window.first_x + ((x + 128) >> 8), window.first_y + ((y + 128) >> 8))
+            .height_64um;
+    x = std::clamp(x + (rise * hits.rise_x[u] >> 10), 0, limit_x);
+    y = std::clamp(y + (rise * hits.rise_y[u] >> 10), 0, limit_y);
+    const std::int32_t whole_x = x >> 8;
+    const std::int32_t whole_y = y >> 8;
+    const auto part_x = static_cast<std::uint32_t>(x & 255);
+    const auto part_y = static_cast<std::uint32_t>(y & 255);
+    const GroundTexel* near_row = ground.row(window.first_x + whole_x);
+    const GroundTexel* far_row = ground.row(window.first_x + whole_x + 1);
+    const std::ptrdiff_t left = ground.column(window.first_y + whole_y);
+    const std::ptrdiff_t right = ground.column(window.first_y + whole_y + 1);
+    const std::uint32_t weight_d = part_x * part_y >> 8;
+    const std::uint32_t weight_c = part_x - weight_d;
+    const std::uint32_t weight_b = part_y - weight_d;
+    const std::uint32_t weight_a = 256 - part_x - weight_b;
+    // Four channels at once, each in 16 bits: the weights sum to 256.
+    const std::uint64_t sum = spread(near_row[left]) * weight_a +
+                              spread(near_row[right]) * weight_b +
+                              spread(far_row[left]) * weight_c + spread(far_row[right]) * weight_d;
+    bgr[0] = static_cast<std::uint8_t>(sum >> 8);
+    bgr[1] = static_cast<std::uint8_t>(sum >> 40);
+    bgr[2] = static_cast<std::uint8_t>(sum >> 24);
+    height = near_row[left].height_64um;
+    shade = static_cast<std::uint8_t>(sum >> 56);
+    return true;
   }
 
   const field::FieldModel field_;

@@ -29,86 +29,98 @@ double next_noise(double value, double deviation, double correlation_s, Random& 
   return value * keep + deviation * std::sqrt(1.0 - keep * keep) * random.normal(0.0, 1.0);
 }
 
-}  // namespace
-
-void RobotMotionParameters::visit(ParameterVisitor& v) {
+void visit_speed(RobotMotionParameters& p, ParameterVisitor& v) {
   v.visit({.name = "speed_mps",
            .unit = "m/s",
            .description = "Speed of the wheels, where no profile is given",
            .min = -5.0,
            .max = 5.0},
-          speed_mps);
+          p.speed_mps);
   v.visit({.name = "profile_time_s",
            .unit = "s",
            .description = "Times of the speed profile since the start; empty: constant speed",
            .min = 0.0,
            .max = 1e6},
-          profile_time_s);
+          p.profile_time_s);
   v.visit({.name = "profile_speed_mps",
            .unit = "m/s",
            .description = "Speeds at profile_time_s, linear in between; two at one time: a step",
            .min = -5.0,
            .max = 5.0},
-          profile_speed_mps);
+          p.profile_speed_mps);
   v.visit({.name = "limit_acceleration_mps2",
            .unit = "m/s2",
-           .description = "By which the speed changes to follow a limit that is asked for",
+           .description = "Acceleration towards a requested speed limit, and back from it",
            .min = 0.01,
            .max = 20.0},
-          limit_acceleration_mps2);
+          p.limit_acceleration_mps2);
+}
+
+void visit_noise_and_steering(RobotMotionParameters& p, ParameterVisitor& v) {
   v.visit({.name = "speed_noise_mps",
            .unit = "m/s",
            .description = "Standard deviation of the speed about its command",
            .min = 0.0,
            .max = 1.0},
-          speed_noise_mps);
+          p.speed_noise_mps);
   v.visit({.name = "speed_correlation_s",
            .unit = "s",
            .description = "Correlation time of the speed's noise",
            .min = 0.001,
            .max = 1000.0},
-          speed_correlation_s);
+          p.speed_correlation_s);
   v.visit({.name = "yaw_noise_radps",
            .unit = "rad/s",
            .description = "Standard deviation of the yaw rate that disturbs the steering",
            .min = 0.0,
            .max = 1.0},
-          yaw_noise_radps);
+          p.yaw_noise_radps);
   v.visit({.name = "yaw_correlation_s",
            .unit = "s",
            .description = "Correlation time of the yaw rate's noise",
            .min = 0.001,
            .max = 1000.0},
-          yaw_correlation_s);
+          p.yaw_correlation_s);
   v.visit({.name = "steering_distance_m",
            .unit = "m",
            .description = "Distance over which steering brings the robot back to the row's line",
            .min = 0.1,
            .max = 100.0},
-          steering_distance_m);
+          p.steering_distance_m);
+}
+
+void visit_start(RobotMotionParameters& p, ParameterVisitor& v) {
   v.visit({.name = "slip",
            .description = "Part of the wheels' speed that does not reach the ground",
            .min = 0.0,
            .max = 0.9},
-          slip);
+          p.slip);
   v.visit({.name = "start_x_m",
            .unit = "m",
-           .description = "Where the base starts along the row",
+           .description = "Start of the base along the row",
            .min = -1e5,
            .max = 1e5},
-          start_x_m);
+          p.start_x_m);
   v.visit({.name = "start_y_m",
            .unit = "m",
-           .description = "Where the base starts beside the row's line, left positive",
+           .description = "Start of the base beside the line of the row, left positive",
            .min = -10.0,
            .max = 10.0},
-          start_y_m);
+          p.start_y_m);
   v.visit({.name = "start_heading_rad",
            .unit = "rad",
            .description = "Heading at the start, counter-clockwise from the row",
            .min = -std::numbers::pi,
            .max = std::numbers::pi},
-          start_heading_rad);
+          p.start_heading_rad);
+}
+
+}  // namespace
+
+void RobotMotionParameters::visit(ParameterVisitor& v) {
+  visit_speed(*this, v);
+  visit_noise_and_steering(*this, v);
+  visit_start(*this, v);
 }
 
 RobotMotion::RobotMotion(const RobotMotionParameters& parameters, std::uint64_t seed, Time start)

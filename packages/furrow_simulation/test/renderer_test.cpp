@@ -111,7 +111,7 @@ TEST(Renderer, PlantsAreNearerThanTheGroundBelow) {
   EXPECT_GT(nearest, 0.88f) << "higher than 1.1 times the largest radius";
 }
 
-TEST(Renderer, SameSeedSameBytesWhateverWasSeenBefore) {
+TEST(Renderer, SameSeedGivesTheSameBytesAfterAnyViews) {
   RendererParameters p = clean();
   p.camera = CameraEffectParameters{};
   Renderer first(field_of(some_plants()), p, 7);
@@ -220,7 +220,7 @@ TEST(Renderer, ExtremePosesGiveAPicture) {
   EXPECT_LT(cv::countNonZero(horizon.depth_m), 320 * 240);
 }
 
-TEST(Renderer, RefusesWhatItCannotDraw) {
+TEST(Renderer, RefusesInvalidParametersAndPlants) {
   auto plants = some_plants();
   plants[2].p_F_m.y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(Renderer(field_of(plants), clean(), 1), ConfigError);

@@ -71,7 +71,7 @@ TEST(RobotMotion, PathDoesNotDependOnTheCallersSteps) {
   EXPECT_NE(other.advance_to(at(2.0)).X_FB.y_m, coarse.state().X_FB.y_m);
 }
 
-TEST(RobotMotion, NearsALimitAndItsOwnSpeedAgainGently) {
+TEST(RobotMotion, ApproachesALimitAndItsOwnSpeedGradually) {
   RobotMotionParameters parameters;
   parameters.limit_acceleration_mps2 = 0.4;
   RobotMotion motion(parameters, 1);
@@ -108,7 +108,7 @@ TEST(RobotMotion, ALimitHoldsInBothDirectionsAndDownToAStandstill) {
   EXPECT_NEAR(motion.advance_to(at(6.0)).speed_mps, 0.0, 1e-12);
 }
 
-TEST(RobotMotion, DoesNotGoBackInTime) {
+TEST(RobotMotion, IgnoresEarlierTimes) {
   RobotMotion motion(noisy(), 7);
   const double x_m = motion.advance_to(at(1.0)).X_FB.x_m;
   EXPECT_EQ(motion.advance_to(at(0.5)).X_FB.x_m, x_m);

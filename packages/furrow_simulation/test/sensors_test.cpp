@@ -148,7 +148,7 @@ TEST(Gnss, ALostFixComesBackByWayOfFloat) {
   EXPECT_EQ(seen.size(), 3u);
 }
 
-TEST(Gnss, AWrongFixIsDisplacedAsAWholeAndStillCalledFixed) {
+TEST(Gnss, AWrongFixIsDisplacedButReportedAsFixed) {
   GnssParameters parameters;
   parameters.jumps_per_min = 6.0;
   parameters.jump_m = 0.3;

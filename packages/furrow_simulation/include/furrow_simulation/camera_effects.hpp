@@ -8,7 +8,7 @@
 
 namespace furrow::simulation {
 
-/// What lens and sensor do to a picture.
+/// Blur, vignetting and noise of lens and sensor.
 struct CameraEffectParameters {
   double lens_blur_px = 0.6;
   double motion_blur_px = 0.9;
@@ -28,9 +28,9 @@ class CameraEffects {
  public:
   CameraEffects(const CameraEffectParameters& parameters, std::uint64_t seed);
 
-  /// `bgr` 8UC3 and `depth_m` 32FC1 of the same size, changed in place. Motion blur runs along the
-  /// image's columns, or along its rows. Bands of rows are handed to `threads` threads; the bytes
-  /// do not depend on their number.
+  /// Changes `bgr` (8UC3) and `depth_m` (32FC1, same size) in place. Motion blur runs along the
+  /// image's columns, or along its rows. `threads` threads share the rows; the bytes do not depend
+  /// on their number.
   void apply(cv::Mat& bgr, cv::Mat& depth_m, std::uint64_t frame_index, bool motion_along_columns,
              int threads) const;
 

@@ -28,28 +28,30 @@ struct GroundParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// A point of the ground, lit. `bgrs` holds blue in its lowest byte, then green, red, and the
-/// brightness out of the sun as a share (of 255) of the colour.
+/// A lit point of the ground. `bgrs` holds blue in its lowest byte, then green, red, and the share
+/// (of 255) of the brightness that remains without the sun.
 struct GroundTexel {
   std::uint32_t bgrs = 0;
   std::int16_t height_64um = 0;
   std::uint16_t unused = 0;  ///< keeps a texel to eight bytes
 };
 
-/// A square of the ground in F: `size` rows along +x, `size` texels along +y in each.
+/// A square of the ground in F: kSize rows along +x, each of kSize texels along +y.
 struct GroundBlock {
   static constexpr int kSize = 256;
   static constexpr float kHeightUnit_m = 64e-6f;
   std::vector<GroundTexel> texels;
 };
 
-/// A triangle of something that stands on the ground and casts a shadow; corners in F.
+/// A triangle of a plant that casts a shadow on the ground; corners in F, in m.
 struct ShadowTriangle {
   Eigen::Vector3f corner[3];
 };
 
-/// Uneven soil with crumbs, clods, stones, straw and cracks, that never repeats: every block is a
-/// function of the seed and its place only.
+struct GroundRegion;
+
+/// Uneven soil with crumbs, clods, stones, straw and cracks. It never repeats: each block depends
+/// on the seed and its place only.
 class Ground {
  public:
   /// Throws ConfigError for a colour that is not three finite numbers.
@@ -58,19 +60,22 @@ class Ground {
   [[nodiscard]] double texel_m() const { return texel_m_; }
   /// The smooth part of the surface: undulation without clods. Plants stand on it.
   [[nodiscard]] double base_height_m(double x_F_m, double y_F_m) const;
-  /// The block whose corner texel is (block_x * kSize, block_y * kSize), shaded by `casters`.
+  /// The block with the corner texel (block_x * kSize, block_y * kSize), with the shadows of
+  /// `casters`.
   void make_block(std::int32_t block_x, std::int32_t block_y,
                   const std::vector<ShadowTriangle>& casters, GroundBlock& block) const;
-  /// How far from a block something of this height may stand and still shade it.
+  /// The largest distance from which an object of this height can shade a block.
   [[nodiscard]] double shadow_length_m(double height_m) const;
 
  private:
-  struct Region;
-  void stamp_objects(Region& region) const;
-  void add_noise(Region& region) const;
-  void add_cracks(Region& region) const;
-  void cast_shadows(Region& region, const std::vector<ShadowTriangle>& casters) const;
-  void shade(const Region& region, GroundBlock& block) const;
+  void add_noise(GroundRegion& region) const;
+  void add_smooth_ground(GroundRegion& region) const;
+  void add_cracks(GroundRegion& region) const;
+  void add_lumps(GroundRegion& region) const;
+  void add_straw(GroundRegion& region) const;
+  void shade(const GroundRegion& region, GroundBlock& block) const;
+  [[nodiscard]] Eigen::Vector3f albedo(const GroundRegion& region, std::size_t texel,
+                                       float patch) const;
 
   GroundParameters parameters_;
   Light light_;

@@ -12,11 +12,13 @@
 
 namespace furrow::simulation {
 
+class View;
+
 /// One annotated plant of a photograph.
 struct PhotoPlant {
   field::PlantKind kind = field::PlantKind::kWeed;
   std::string species;
-  std::optional<Eigen::Vector2d> stem_px;  ///< the mask's centroid where it is not known
+  std::optional<Eigen::Vector2d> stem_px;  ///< nullopt: unknown, the mask's centroid is used
 };
 
 /// A photograph of the ground from above, with its plants.
@@ -39,10 +41,10 @@ struct PhotoGroundParameters {
 };
 
 /// Photographs laid side by side on the flat ground z = 0, so that a camera flies over real pixels.
-/// A photo's upper edge points along +x (after `quarter_turns` counter-clockwise). Photos are
-/// repeated in their order until they fill length and width; with `vary_repeats`, copies are
-/// mirrored and turned by half at random. Plants whose stem falls outside length and width, and
-/// the parts of photos beyond, are left out. Ground outside holds no depth.
+/// The upper edge of a photo points along +x, after `quarter_turns` counter-clockwise. Photos
+/// repeat in their order until they fill length and width. With `vary_repeats`, copies are mirrored
+/// and turned by half at random. Length and width crop the photos; a plant with its stem outside is
+/// left out. Outside them the depth is 0.
 class PhotoGround final : public Scene {
  public:
   /// Throws ConfigError: no photo, sizes or types that do not match, an instance without its
@@ -55,6 +57,8 @@ class PhotoGround final : public Scene {
                              std::uint64_t frame_index) override;
 
  private:
+  struct MaskedPlant;
+  struct PlantOrigin;
   struct Photo {
     std::vector<cv::Mat> levels;  ///< each half the size of the one before
     cv::Mat instance_id;          ///< of the first level
@@ -65,6 +69,17 @@ class PhotoGround final : public Scene {
     bool mirror = false;
     std::vector<std::int32_t> plant_index;  ///< by instance; -1 where it is left out
   };
+
+  [[nodiscard]] static std::vector<MaskedPlant> measure(const GroundPhoto& photo);
+  [[nodiscard]] static Photo with_levels(const GroundPhoto& photo);
+  void lay_out(const cv::Size& photo_size, double pixel_m);
+  [[nodiscard]] field::Plant plant_on_ground(const PhotoPlant& annotated, const MaskedPlant& mask,
+                                             std::size_t cell, const cv::Size& photo_size) const;
+  void sort_plants(const std::vector<PlantOrigin>& origins);
+  [[nodiscard]] int level_for(const geometry::CameraIntrinsics& intrinsics, double height_m) const;
+  void draw_row(const View& view, int level, int v, Frame& frame) const;
+  void draw_pixel(double x_m, double y_m, int level, std::uint8_t* bgr, std::int32_t& index) const;
+  void list_plants(const geometry::PinholeCamera& camera, const View& view, Frame& frame) const;
 
   PhotoGroundParameters parameters_;
   CameraEffects effects_;

@@ -11,11 +11,11 @@
 
 namespace furrow::simulation {
 
-/// How the simulated robot truly drives. All noise 0: exactly along the row's line.
+/// The true motion of the simulated robot. Without noise it follows the row's line exactly.
 struct RobotMotionParameters {
   double speed_mps = 0.5;
-  /// Speed over time since the start, linear in between, held before and after; two points at one
-  /// time make a step. Empty: speed_mps throughout. Negative speeds drive backwards.
+  /// Speed over time since the start. It is linear in between, and constant before and after. Two
+  /// points at one time make a step. Empty: speed_mps throughout. Negative speeds drive backwards.
   std::vector<double> profile_time_s;
   std::vector<double> profile_speed_mps;
   double limit_acceleration_mps2 = 0.5;
@@ -38,15 +38,19 @@ struct RobotState {
   double speed_mps = 0.0;  ///< over ground, along B's x
   double yaw_rate_radps = 0.0;
   double acceleration_mps2 = 0.0;  ///< along B's x
-  double wheel_speed_mps = 0.0;    ///< what the wheels turn; more than speed_mps when they slip
+  double wheel_speed_mps = 0.0;    ///< at the wheels' rim; more than speed_mps when they slip
 };
 
-/// The true motion of the base along the line y = 0. Wheel speed and yaw rate are disturbed by
-/// Ornstein-Uhlenbeck noise, both less below a crawl, so that a robot that is to stand stands;
-/// steering brings the base back to the line, critically damped over the steering distance L:
-/// curvature = -(y / L^2 + 2 sin(heading) / L), with y held within L, and the second term turned
-/// when driving backwards. Integrated on a fixed grid of 1 ms from the start, speed linear in
-/// between, so that the path does not depend on how the caller steps.
+/// The true motion of the base along the line y = 0.
+///
+/// Ornstein-Uhlenbeck noise disturbs wheel speed and yaw rate. It fades out at low speed, so that a
+/// robot that shall stand does stand. Steering brings the base back to the line, critically damped
+/// over the steering distance L:
+///   curvature = -(y / L^2 + 2 sin(heading) / L)
+/// y is clamped to L, and the second term changes its sign when the robot drives backwards.
+///
+/// Integration uses a fixed grid of 1 ms from the start, with linear speed in between. The path
+/// therefore does not depend on the steps of the caller.
 class RobotMotion {
  public:
   /// Throws ConfigError for a profile whose lists differ in length or whose times descend, and
@@ -59,9 +63,9 @@ class RobotMotion {
   /// Does nothing when `time` is past already.
   const RobotState& advance_to(Time time);
 
-  /// From now on the command's magnitude nears, by limit_acceleration_mps2, the lesser of its own
-  /// and `limit_mps`; without one, its own. A motion that was never limited accelerates as its
-  /// profile says. @pre finite, >= 0.
+  /// Limits the magnitude of the command to `limit_mps`; nullopt ends the limit. The command
+  /// approaches its new value by limit_acceleration_mps2. Before the first limit, the acceleration
+  /// is that of the profile. @pre finite, >= 0.
   void limit_speed(std::optional<double> limit_mps) { asked_limit_mps_ = limit_mps; }
 
  private:
@@ -75,7 +79,7 @@ class RobotMotion {
   Random yaw_random_;
   Time start_;
   std::optional<double> asked_limit_mps_;
-  std::optional<double> limit_mps_;  ///< in force; nears what is asked
+  std::optional<double> limit_mps_;  ///< in force; approaches asked_limit_mps_
   double speed_noise_mps_ = 0.0;
   double yaw_noise_radps_ = 0.0;
   RobotState grid_;  ///< at the last grid time, with the inputs of the cell that it begins

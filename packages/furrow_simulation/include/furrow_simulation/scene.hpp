@@ -11,7 +11,7 @@
 
 namespace furrow::simulation {
 
-/// What is true of a plant that shows at least one pixel in a frame.
+/// Ground truth of a plant with at least one visible pixel in a frame.
 struct VisiblePlant {
   std::size_t plant_index = 0;  ///< into FieldModel::plants
   std::int64_t id = 0;          ///< Plant::id
@@ -20,8 +20,8 @@ struct VisiblePlant {
   Eigen::Vector2d stem_px = Eigen::Vector2d::Zero();  ///< may lie outside the image
 };
 
-/// A simulated RGB-D picture and its truth. The matrices have the camera's size and are owned by
-/// the frame.
+/// A simulated RGB-D image and its ground truth. The matrices have the camera's size and are owned
+/// by the frame.
 struct Frame {
   cv::Mat bgr;          ///< 8UC3
   cv::Mat depth_m;      ///< 32FC1, along the optical axis; 0 where there is none
@@ -29,7 +29,7 @@ struct Frame {
   std::vector<VisiblePlant> plants;  ///< in the order of plant_index
 };
 
-/// Something that a down-facing camera can look at.
+/// A scene that a down-facing camera can render.
 class Scene {
  public:
   virtual ~Scene() = default;

@@ -91,7 +91,7 @@ struct GnssParameters {
 
 struct GnssReading {
   Time time;       ///< when the antenna was there
-  Time available;  ///< when the receiver hands it out
+  Time available;  ///< when the receiver publishes it
   GnssQuality quality = GnssQuality::kFixed;
   Eigen::Vector2d p_F_m = Eigen::Vector2d::Zero();  ///< the antenna
   double standard_deviation_m = 0.0;                ///< as the receiver claims it
