@@ -8,16 +8,15 @@
 
 namespace furrow::components {
 
-/// What is told of an axis besides its state.
+/// What the diagnostics report of an axis besides its state.
 struct AxisRemarks {
-  std::string refusal;        ///< of the drive; empty: none
-  std::string not_confirmed;  ///< protections of the devices; empty: all are
-  std::string latches;        ///< how they are kept over a restart
+  std::string refusal;        ///< last refusal of the drive; empty: none
+  std::string not_confirmed;  ///< device protections that are not confirmed; empty: none
+  std::string latches;        ///< how the latched causes survive a restart
 };
 
-/// One axis as ROS 2's diagnostics show it: an error in the safe state, with the cause and when it
-/// was found; a warning while it waits, with what the drive refused, or while a protection of its
-/// devices is not confirmed.
+/// One axis as ROS 2 diagnostics. Level error: safe state, with its cause and time. Level warning:
+/// the axis waits, with the drive's refusal, or a protection of its devices is not confirmed.
 [[nodiscard]] diagnostic_msgs::msg::DiagnosticArray axis_diagnostics(
     const std::string& component, const furrow_msgs::msg::AxisState& state, Time cause_found,
     const AxisRemarks& remarks);

@@ -43,11 +43,11 @@ std::unique_ptr<actuation::LatchStore> open_latches(const AxisDriverParameters& 
                                                  (parameters.axis + ".latches"));
 }
 
-/// Drives one axis and its nozzle.
+/// Drives one axis and its nozzle. The only owner of their safe state (docs/decisions/0009).
 class AxisDriverComponent final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("One axis and its nozzle: moves to its stops, fires, and owns the tool's safety.")
+    d.doc("One axis and its nozzle: moves to its stops, sprays, and owns the safe state.")
         .parameters<AxisDriverParameters>()
         .input<topics::Plan>()
         .input<topics::PlannerHeartbeat>()
@@ -94,7 +94,7 @@ class AxisDriverComponent final : public graph::Component {
     });
   }
 
-  /// Leaves the hardware in its safe state, and says what of it is not confirmed.
+  /// Leaves the hardware in its safe state, and prints which device did not confirm it.
   ~AxisDriverComponent() override {
     if (!last_cycle_) return;
     constexpr double kPatience_s = 0.5;
@@ -131,13 +131,13 @@ class AxisDriverComponent final : public graph::Component {
     if (route != plan.routes().end()) {
       for (const auto& stop : route->stops()) stops_.push_back(from_msg(stop));
     }
-    // The plan's stamp is that of its newest image; for the deadline it counts when it came.
+    // The deadline counts from the arrival: the stamp is that of the newest image.
     if (const Status taken = controller_.set_plan(context_.arrival(), stops_); !taken.ok()) {
       context_.warn("bad_plans", taken.error().message + "; the plan was not used");
     }
   }
 
-  // A number that cannot be compared never takes the protection from a plant.
+  // A plant with a probability that is NaN stays protected.
   void protect(const furrow_msgs::msg::Tracks& tracks) {
     protected_.clear();
     const double x_m = base_x_m_ + axis_.p_BN0.x();

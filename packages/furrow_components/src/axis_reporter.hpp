@@ -11,18 +11,17 @@
 
 namespace furrow::components {
 
-/// Publishes what one tool does: its state, its events, the outcome of every stop, its health.
+/// Publishes state, events and diagnostics of one axis, and sets the health of its component.
 class AxisReporter {
  public:
-  /// The context outlives it.
+  /// The context must outlive it.
   AxisReporter(graph::Context& context, std::string axis, double flow_mlps, double close_delay_s);
 
-  /// What a cycle brought about. `reading`: the drive's, of this cycle.
+  /// Publishes the events of a cycle. `reading`: the drive's, of this cycle.
   void report(Time now, const actuation::CycleReport& cycle, const actuation::AxisReading& reading);
   void publish_state(Time now, const actuation::AxisController& controller,
                      const actuation::AxisReading& reading);
-  /// Once a second. `refusal`: of the drive; `not_confirmed`: protections of the devices;
-  /// `latches`: how they are kept over a restart.
+  /// Call once a second. The texts are those of AxisRemarks.
   void publish_diagnostics(const std::string& refusal, const std::string& not_confirmed,
                            const std::string& latches);
   /// Sets the component's health where it changed.

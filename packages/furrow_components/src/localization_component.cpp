@@ -198,8 +198,8 @@ class Localization final : public graph::Component {
     known_ = true;
   }
 
-  // The pose of a robot that stands is held, and its twist is zero. What the sensors add meanwhile
-  // shows when it drives on.
+  // Holds the published pose at standstill, with a twist of zero. Corrections of that time are
+  // published when the robot drives on.
   void hold_while_standing() {
     if (!standstill_.standing()) {
       held_.reset();

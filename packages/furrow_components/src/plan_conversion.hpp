@@ -20,7 +20,7 @@ class PlanConversion {
  public:
   explicit PlanConversion(std::vector<LateralAxis> axes) : axes_(std::move(axes)) {}
 
-  /// Notes when a track was seen last; stops tell it of their targets.
+  /// Notes when a track was seen last. Messages give this time for the target of each stop.
   void seen(std::int64_t track, Time last_seen);
   /// The routes and the decisions about their targets, as of a pose of the base. The message gets
   /// the stamp of the tracks.

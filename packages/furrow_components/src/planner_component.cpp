@@ -242,7 +242,7 @@ class PlannerComponent final : public graph::Component {
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::vector<planning::CropPhenotype> crops_;
   // Of the newest tracks:
-  std::vector<std::int64_t> left_standing_;  ///< left on purpose
+  std::vector<std::int64_t> left_standing_;  ///< left for biodiversity
   std::vector<std::int64_t> invalid_;        ///< weeds with invalid numbers or stale tracks
   std::vector<std::int64_t> deleted_;        ///< targets whose track was deleted
   std::vector<planning::TargetOutcome> outcomes_;

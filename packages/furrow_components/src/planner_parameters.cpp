@@ -16,11 +16,11 @@ void PlannerComponentParameters::visit(ParameterVisitor& v) {
           crop_threshold);
   v.visit({.name = "treat_unconfirmed",
            .description = "also plan for weeds whose track is not confirmed: fewer missed weeds, "
-                          "more sprays on nothing"},
+                          "more sprays on bare soil"},
           treat_unconfirmed);
   v.visit({.name = "max_pose_age_s",
            .unit = "s",
-           .description = "without odometry for this long nothing is planned",
+           .description = "largest age of the odometry; nothing is planned with an older one",
            .min = 0.01,
            .max = 10.0},
           max_pose_age_s);

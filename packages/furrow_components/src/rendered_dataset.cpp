@@ -208,81 +208,112 @@ Result<std::vector<annotation::AnnotatedImage>> render_sequence(
   return images;
 }
 
-}  // namespace
-
-void RenderedDatasetParameters::visit(ParameterVisitor& v) {
-  v.visit({.name = "images", .description = "in all three parts", .min = 1, .max = 100000}, images);
-  v.visit({.name = "width_px", .unit = "px", .description = "of an image", .min = 64, .max = 4096},
-          width_px);
-  v.visit({.name = "height_px", .unit = "px", .description = "of an image", .min = 64, .max = 4096},
-          height_px);
+void visit_images(RenderedDatasetParameters& p, ParameterVisitor& v) {
+  v.visit({.name = "images",
+           .description = "number of images in all three parts",
+           .min = 1,
+           .max = 100000},
+          p.images);
+  v.visit({.name = "width_px",
+           .unit = "px",
+           .description = "width of an image",
+           .min = 64,
+           .max = 4096},
+          p.width_px);
+  v.visit({.name = "height_px",
+           .unit = "px",
+           .description = "height of an image",
+           .min = 64,
+           .max = 4096},
+          p.height_px);
   v.visit({.name = "resolution_mm_per_px",
            .unit = "mm/px",
-           .description = "on the ground",
+           .description = "ground resolution before the scale varies",
            .min = 0.1,
            .max = 10.0},
-          resolution_mm_per_px);
+          p.resolution_mm_per_px);
   v.visit({.name = "scale_variation",
-           .description = "of the camera's height, 1 +-",
+           .description = "camera height varies by a factor of 1 +- this",
            .min = 0.0,
            .max = 0.5},
-          scale_variation);
-  v.visit(
-      {.name = "tilt_max_rad", .unit = "rad", .description = "of the camera", .min = 0, .max = 0.3},
-      tilt_max_rad);
+          p.scale_variation);
+  v.visit({.name = "tilt_max_rad",
+           .unit = "rad",
+           .description = "largest tilt of the camera",
+           .min = 0,
+           .max = 0.3},
+          p.tilt_max_rad);
   v.visit({.name = "yaw_max_rad",
            .unit = "rad",
-           .description = "between camera and row",
+           .description = "largest angle between camera and row",
            .min = 0.0,
            .max = 3.2},
-          yaw_max_rad);
+          p.yaw_max_rad);
+}
+
+void visit_content(RenderedDatasetParameters& p, ParameterVisitor& v) {
   v.visit({.name = "weeds_per_m2_min",
            .unit = "1/m2",
            .description = "least density",
            .min = 0.01,
            .max = 1000},
-          weeds_per_m2_min);
+          p.weeds_per_m2_min);
   v.visit({.name = "weeds_per_m2_max",
            .unit = "1/m2",
            .description = "greatest density",
            .min = 0.01,
            .max = 1000},
-          weeds_per_m2_max);
+          p.weeds_per_m2_max);
   v.visit({.name = "weed_shares",
-           .description = "one for each weed of the species table, in its order; empty: equal",
+           .description = "share of each weed, in the order of the species table; empty: equal",
            .min = 0.0,
            .max = 1e6},
-          weed_shares);
-  v.visit({.name = "crop_share", .description = "images with crop rows", .min = 0, .max = 1},
-          crop_share);
+          p.weed_shares);
+  v.visit({.name = "crop_share",
+           .description = "share of the images with a crop row",
+           .min = 0,
+           .max = 1},
+          p.crop_share);
   v.visit({.name = "variety",
-           .description = "of light, soil, sizes and forms, towards what real fields show",
+           .description = "0 to 1: wider ranges of light, soil, sizes and forms, as in real fields",
            .min = 0.0,
            .max = 1.0},
-          variety);
-  v.visit({.name = "validation_share", .description = "of the images", .min = 0, .max = 0.5},
-          validation_share);
-  v.visit({.name = "evaluation_share", .description = "of the images", .min = 0, .max = 0.5},
-          evaluation_share);
+          p.variety);
+}
+
+void visit_parts_and_sequences(RenderedDatasetParameters& p, ParameterVisitor& v) {
+  v.visit({.name = "validation_share", .description = "share of the images", .min = 0, .max = 0.5},
+          p.validation_share);
+  v.visit({.name = "evaluation_share", .description = "share of the images", .min = 0, .max = 0.5},
+          p.evaluation_share);
   v.visit({.name = "sequence_frames",
-           .description = "in a sequence whose last frame is labelled; 1: single images",
+           .description = "images of a sequence, of which the last is labelled; 1: single images",
            .min = 1,
            .max = 100},
-          sequence_frames);
+          p.sequence_frames);
   v.visit({.name = "velocity_mps",
            .unit = "m/s",
-           .description = "of the robot within a sequence",
+           .description = "speed of the robot within a sequence",
            .min = 0.0,
            .max = 5.0},
-          velocity_mps);
+          p.velocity_mps);
   v.visit({.name = "frame_rate_hz",
            .unit = "Hz",
-           .description = "within a sequence",
+           .description = "images per second within a sequence",
            .min = 0.1,
            .max = 100.0},
-          frame_rate_hz);
-  v.visit({.name = "depth", .description = "write depth images too"}, depth);
-  v.visit({.name = "threads", .description = "of the renderer", .min = 1, .max = 256}, threads);
+          p.frame_rate_hz);
+  v.visit({.name = "depth", .description = "write depth images too"}, p.depth);
+  v.visit({.name = "threads", .description = "threads of the renderer", .min = 1, .max = 256},
+          p.threads);
+}
+
+}  // namespace
+
+void RenderedDatasetParameters::visit(ParameterVisitor& v) {
+  visit_images(*this, v);
+  visit_content(*this, v);
+  visit_parts_and_sequences(*this, v);
 }
 
 Status render_dataset(const RenderedDatasetParameters& parameters,

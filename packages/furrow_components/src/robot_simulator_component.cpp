@@ -99,6 +99,27 @@ struct Parameters {
     PrefixedVisitor fault_visitor(v, "valve_fault_");
     valve_faults.visit(fault_visitor);
   }
+
+  void visit_rates(ParameterVisitor& v) {
+    v.visit({.name = "rate_hz",
+             .unit = "Hz",
+             .description = "rate of the odometry",
+             .min = 1.0,
+             .max = 1000.0},
+            rate_hz);
+    v.visit({.name = "imu_rate_hz",
+             .unit = "Hz",
+             .description = "rate of the inertial measurements",
+             .min = 1.0,
+             .max = 1000.0},
+            imu_rate_hz);
+    v.visit({.name = "gnss_rate_hz",
+             .unit = "Hz",
+             .description = "rate of the positions of the antenna",
+             .min = 0.1,
+             .max = 100.0},
+            gnss_rate_hz);
+  }
 };
 
 localization::FixQuality quality_of(simulation::GnssQuality quality) {

@@ -36,7 +36,7 @@ struct Parameters {
   }
 };
 
-/// Gathers what the ledger of a run is made of, and hands it out when the run is finished.
+/// Collects the input of the ledger, and publishes it when the run is finished.
 class Scorer final : public graph::Component {
  public:
   static void describe(graph::Description& d) {

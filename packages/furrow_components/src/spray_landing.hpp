@@ -15,9 +15,9 @@
 
 namespace furrow::components {
 
-/// Lets what the valves release fall to the ground under a robot that moves on, and publishes where
-/// it lands. The commands pass the simulated valves, which may have faults: what a valve releases
-/// without a command lands as sprays of stop 0 without tracks, a slice of kSlice each.
+/// Simulates valves and falling drops under the moving robot, and publishes where sprays land. A
+/// faulty valve may release drops without a command. They are published as sprays of stop 0 without
+/// tracks, one for each kSlice of time.
 class SprayLanding {
  public:
   /// `odometry_gap`: how far the ground truth may be extrapolated. The context must outlive it.
@@ -25,12 +25,12 @@ class SprayLanding {
                const simulation::SprayParameters& parameters,
                const simulation::ValveFaultParameters& faults, Duration odometry_gap);
 
-  /// A valve was opened and closed, when the event says so.
+  /// Takes the spray of an event; other events are ignored.
   void take(const furrow_msgs::msg::AxisEvent& event);
-  /// Where an axis is, for what its valve releases without a command.
+  /// Takes the position of an axis, for drops that its valve releases without a command.
   void take(const furrow_msgs::msg::AxisState& state);
-  /// The true motion, in order of time; then what has left its nozzle by then lands. False when the
-  /// odometry is refused.
+  /// Takes the true motion, in order of time, and publishes the sprays that are complete by then.
+  /// False when the odometry is refused.
   bool move(const nav_msgs::msg::Odometry& truth);
 
  private:

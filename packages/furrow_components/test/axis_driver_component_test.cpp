@@ -254,7 +254,7 @@ TEST(AxisDriverComponent, AnEmergencyStopIsLatchedUntilItIsReset) {
   EXPECT_EQ(world.health.level, graph::HealthLevel::kOk);
 }
 
-TEST(AxisDriverComponent, ASilentPlannerMakesItSafeAndItStaysSo) {
+TEST(AxisDriverComponent, ASilentPlannerLatchesTheSafeState) {
   World world;
   world.planner_alive = [](double t_s) { return t_s < 2.0 || t_s > 3.0; };
   run(world);
@@ -274,7 +274,7 @@ TEST(AxisDriverComponent, ASilentPlannerMakesItSafeAndItStaysSo) {
   EXPECT_TRUE(world.diagnostics.back().message().starts_with("peer_lost at 2.05"));
 }
 
-TEST(AxisDriverComponent, OdometryThatStopsMakesItSafeUntilReset) {
+TEST(AxisDriverComponent, StoppedOdometryLatchesTheSafeStateUntilReset) {
   World world;
   world.odometry_comes = [](double t_s) { return t_s < 2.0 || t_s > 3.0; };
   world.resets_s = {4.0};

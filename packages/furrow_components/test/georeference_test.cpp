@@ -19,7 +19,7 @@ GnssPosition position(FixQuality quality, double sigma_x_m, double sigma_y_m) {
   return position;
 }
 
-TEST(Georeference, BringsAPositionThereAndBack) {
+TEST(Georeference, ConvertsAPositionThereAndBack) {
   GeoreferenceParameters parameters;
   parameters.row_angle_deg = 35.0;
   const Georeference georeference(parameters);

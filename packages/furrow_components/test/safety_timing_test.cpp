@@ -1,5 +1,5 @@
-// How soon an axis driver shuts its valve: in real time, with the driver on a thread of its own as
-// the graphs have it. Each repetition lets the valve open, then brings the cause about.
+// The time until an axis driver shuts its valve: in real time, with the driver on a dedicated
+// thread as in the graphs. Each repetition opens the valve, then triggers the cause.
 
 #include "furrow_core/test_support/undisturbed_rounds.hpp"
 #include "safety_repetitions.hpp"

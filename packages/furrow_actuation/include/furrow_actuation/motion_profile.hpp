@@ -67,12 +67,13 @@ class MotionProfile {
   double duration_s_ = 0.0;
 };
 
-/// The quickest movement from `start` to rest at `target_m` under velocity and acceleration limits
-/// (trapezoid or triangle; acceleration jumps, start.acceleration_mps2 is not looked at). A start
-/// that moves away or too fast first brakes and comes back.
-/// kInvalidArgument: a number that is not finite, limits that are not positive. kOutOfRange: target
-/// outside the position limits, start beyond the velocity limit. kNoSolution: braking from `start`
-/// passes a position limit.
+/// The quickest movement from `start` to rest at `target_m` under velocity and acceleration limits:
+/// a trapezoid or triangle of velocity. Acceleration jumps, and start.acceleration_mps2 is ignored.
+/// A start that moves away or too fast first brakes and comes back.
+///
+/// - kInvalidArgument: a number that is not finite, limits that are not positive.
+/// - kOutOfRange: target outside the position limits, start beyond the velocity limit.
+/// - kNoSolution: braking from `start` passes a position limit.
 [[nodiscard]] Result<MotionProfile> plan_trapezoid(const MotionLimits& limits,
                                                    const MotionState& start, double target_m);
 

@@ -7,7 +7,7 @@
 
 namespace furrow::components {
 
-/// Where the field frame lies on the earth, as parameters.
+/// Origin and direction of the field frame on the earth (WGS 84).
 struct GeoreferenceParameters {
   double origin_latitude_deg = 50.6150;
   double origin_longitude_deg = 6.9870;
@@ -17,16 +17,16 @@ struct GeoreferenceParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// A NavSatFix in the field frame and back.
+/// Converts between NavSatFix and positions in the field frame.
 class Georeference {
  public:
   /// Throws ConfigError.
   explicit Georeference(const GeoreferenceParameters& parameters);
 
-  /// Status GBAS stands for RTK, fixed when the claimed standard deviation is at most
-  /// kFixedSigma_m; a covariance of unknown type leaves the measurement's own empty.
+  /// Status GBAS stands for RTK. It is a fixed solution if its standard deviation is at most
+  /// kFixedSigma_m. A covariance of unknown type leaves that of the measurement empty.
   [[nodiscard]] localization::GnssPosition from_msg(const sensor_msgs::msg::NavSatFix& fix) const;
-  /// A covariance of zero is told as unknown.
+  /// A covariance of zero is published as unknown.
   [[nodiscard]] sensor_msgs::msg::NavSatFix to_msg(
       const localization::GnssPosition& position) const;
 

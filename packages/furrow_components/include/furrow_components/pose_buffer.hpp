@@ -17,8 +17,8 @@ class PoseBuffer {
   /// a row, each newer than the one before, time has jumped: the last of them is added.
   /// kInvalidArgument: not finite.
   Status add(const BaseOdometry& odometry);
-  /// Interpolated between two neighbours; extrapolated by its twist up to `ahead` beyond the
-  /// newest. kUnavailable: empty. kStale: before the oldest or too far ahead.
+  /// Interpolated between two neighbours. Up to `ahead` beyond the newest pose, extrapolated by its
+  /// twist. kUnavailable: empty. kStale: before the oldest or too far ahead.
   [[nodiscard]] Result<BaseOdometry> at(Time stamp, Duration ahead = Duration()) const;
   [[nodiscard]] bool empty() const { return poses_.empty(); }
   [[nodiscard]] const BaseOdometry& newest() const { return poses_.back(); }

@@ -11,7 +11,7 @@
 
 namespace furrow::components {
 
-/// How a run's tracks are saved as a field model.
+/// Parameters of the field model that a run's tracks are saved as.
 struct TrackFieldParameters {
   std::string field_model_file;  ///< .csv or .geojson; empty: none is saved
   double length_m = 20.0;
