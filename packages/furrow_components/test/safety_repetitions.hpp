@@ -228,7 +228,7 @@ class Feeder final : public graph::Component {
   Time reset_;     // when one was last asked for
   Time progress_;  // when the valve last opened or shut
   std::string mode_;
-  std::vector<msgs::SafetyCause> latched_;
+  std::vector<furrow_msgs::msg::SafetyCause> latched_;
   std::optional<Time> planned_;
   std::int64_t stops_ = 0;
   std::uint64_t openings_ = 0;
