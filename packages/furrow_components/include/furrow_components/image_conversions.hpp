@@ -16,9 +16,10 @@ namespace furrow::components {
                                              const std::string& frame);
 
 /// A matrix over the message's own bytes, which must outlive it and must not be written through it.
-/// Encodings as ROS names them (sensor_msgs/image_encodings.hpp): bgr8, rgb8, bgra8, rgba8, 8UC3,
-/// 8UC4, mono8, 8UC1, bayer_{rggb,bggr,gbrg,grbg}8, yuv422 (or uyvy), yuv422_yuy2 (or yuyv), 16UC1,
-/// mono16, 32FC1. kInvalidArgument for others, big endian, and sizes that do not match the data.
+/// Encodings are those of ROS (sensor_msgs/image_encodings.hpp): bgr8, rgb8, bgra8, rgba8, mono8,
+/// 8UC1, 8UC3, 8UC4, bayer_{rggb,bggr,gbrg,grbg}8, 16UC1, mono16, 32FC1. YUV of 4:2:2 is yuv422 or
+/// uyvy, and yuv422_yuy2 or yuyv. kInvalidArgument: another encoding, a big-endian image, or a size
+/// that does not match the data.
 [[nodiscard]] Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message);
 
 /// A colour image in bgr order: bgr8 and 8UC3 without a copy, others converted; mono8 with three
