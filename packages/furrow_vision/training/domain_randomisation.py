@@ -19,7 +19,7 @@ def randomise(rng, bgr, ids, plants, crops):
         image = recolour_plants(rng, image, ids, plants, crops)
     if rng.random() < 0.5:
         image = recolour_soil(rng, image, ids)
-    if rng.random() < 0.25:
+    if rng.random() < 0.4:
         image = cast_shadows(rng, image, ids)
     if rng.random() < 0.45:
         image, ids = scatter_objects(rng, image, ids)
@@ -39,8 +39,8 @@ def _smooth_noise(rng, shape, cell_px):
 
 def _colour_gain(rng, spread):
     """Gains of blue, green, red. The blue one varies most: between yellowish and bluish green."""
-    value = np.exp(rng.normal(0.0, 0.28 * spread))
-    blue, red = np.exp(rng.normal(0.0, 0.35 * spread)), np.exp(rng.normal(0.0, 0.14 * spread))
+    value = np.exp(rng.normal(0.0, 0.24 * spread))
+    blue, red = np.exp(rng.normal(0.0, 0.27 * spread)), np.exp(rng.normal(0.0, 0.14 * spread))
     return value * np.array([blue, 1.0, red], np.float32)
 
 
@@ -49,12 +49,13 @@ def recolour_plants(rng, image, ids, plants, crops):
     classes = np.array([plant[0] for plant in plants])
     common = _colour_gain(rng, 0.6)
     # Weeds are bluer than the crop on most fields: the mean of (G - B) / (R + G + B) over the labelled
-    # plants of four real sets is lower by 0.015 to 0.065.
-    weeds = _colour_gain(rng, 0.25) * np.array([np.exp(rng.normal(0.2, 0.12)), 1.0, 1.0], np.float32)
+    # plants of four real sets is lower by 0.015 to 0.065. The deviation is larger than the difference,
+    # so that the habit decides and not the colour.
+    weeds = _colour_gain(rng, 0.25) * np.array([np.exp(rng.normal(0.08, 0.2)), 1.0, 1.0], np.float32)
     species = {c: _colour_gain(rng, 0.4) * (1.0 if c < crops else weeds) for c in set(classes)}
     gains = np.stack([common * species[c] * _colour_gain(rng, 0.3) for c in classes])
     gains = np.clip(gains, 0.35, 2.2)
-    greyness = np.clip(rng.normal(0.0, 0.25, len(plants)), 0.0, 0.6)  # dust, hairs, drought
+    greyness = np.clip(rng.normal(-0.05, 0.2, len(plants)), 0.0, 0.5)  # dust, hairs, drought
     soil = np.float32(np.median(image[ids < 0], axis=0) if (ids < 0).any() else 110.0)
     dust = np.where(rng.random(len(plants)) < 0.15, rng.uniform(0.1, 0.5, len(plants)), 0.0)
     red = np.where(rng.random(len(plants)) < 0.08, rng.uniform(0.1, 0.4, len(plants)), 0.0)
@@ -67,7 +68,7 @@ def recolour_plants(rng, image, ids, plants, crops):
     pixels[:, 2] *= 1.0 + red[which]
     pixels[:, 1] *= 1.0 - 0.5 * red[which]
     is_crop = classes[which] < crops
-    for kind, gloss, relief in ((is_crop, 0.6, 0.7), (~is_crop, 0.25, 0.4)):
+    for kind, gloss, relief in ((is_crop, 0.45, 0.6), (~is_crop, 0.35, 0.5)):
         if rng.random() < gloss:  # bright spots on waxy, blistered leaves
             noise = _smooth_noise(rng, ids.shape, rng.uniform(2.5, 7.0)) - rng.uniform(0.8, 1.6)
             shine = np.clip(noise, 0, 2)[inside] * kind
@@ -102,7 +103,7 @@ def cast_shadows(rng, image, ids):
     du, dv = length * np.cos(angle), length * np.sin(angle)
     plant = (ids >= 0).astype(np.uint8)
     shadow = np.zeros_like(plant)
-    for share in np.linspace(0.25, 1.0, 6):
+    for share in np.linspace(0.1, 1.0, int(length / 4) + 3):
         move = np.float32([[1, 0, du * share], [0, 1, dv * share]])
         shadow |= cv2.warpAffine(plant, move, plant.shape[::-1], flags=cv2.INTER_NEAREST)
     shadow[plant > 0] = 0
@@ -210,7 +211,7 @@ def _develop(rng, image):
     image = np.clip(image, 0, 400) / 255.0
     if rng.random() < 0.8:
         image = image ** np.float32(np.exp(rng.normal(0.0, 0.22)))
-    exposure = np.exp(rng.normal(0.0, 0.3)) if rng.random() < 0.8 else np.exp(rng.uniform(-1.9, 0.6))
+    exposure = np.exp(rng.normal(0.1, 0.3)) if rng.random() < 0.82 else np.exp(rng.uniform(-2.0, 0.8))
     image = image * np.float32(exposure) * np.exp(rng.normal(0.0, [0.07, 0.03, 0.07])).astype(np.float32)
     luma = image @ np.array([0.11, 0.59, 0.30], np.float32)
     image = luma[..., None] + (image - luma[..., None]) * np.float32(rng.uniform(0.45, 1.2))

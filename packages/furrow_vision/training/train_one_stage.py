@@ -102,7 +102,7 @@ def main():
         model, avg_fn=lambda mean, new, _: 0.995 * mean + 0.005 * new, use_buffers=True)
     weights = training_run.class_weights(train).to(device)
     samples = training_run.Samples(train, arguments.size, arguments.seed, make_sample,
-                                   arguments.randomise)
+                                   arguments.randomise, arguments.painted)
     loader = training_run.loader(samples, arguments)
     optimizer = torch.optim.AdamW(model.parameters(), lr=arguments.rate, weight_decay=1e-4)
     progress = training_run.Progress(arguments, len(loader))

@@ -13,6 +13,7 @@ import torch
 import augment
 import data
 import domain_randomisation
+import painted_plants
 
 
 def parser(description, batch, size, rate):
@@ -33,6 +34,8 @@ def parser(description, batch, size, rate):
     options.add_argument("--randomise", type=float, default=0.0, metavar="SHARE",
                          help="share of the crops that domain_randomisation.py changes, also in scale "
                               "and direction")
+    options.add_argument("--painted", type=float, default=0.0, metavar="SHARE",
+                         help="share of the randomised crops that get plants of painted_plants.py")
     return options
 
 
@@ -55,11 +58,14 @@ def load_sets(arguments, classes=None):
 
 class Samples(torch.utils.data.Dataset):
     """Crops of the training images, augmented, as `make` turns them into tensors. The random numbers
-    depend on seed, epoch and index. `randomise` is the share that gets domain randomisation."""
+    depend on seed, epoch and index. `randomise` is the share that gets domain randomisation, and
+    `painted` the share of these that gets painted plants."""
 
-    def __init__(self, coco, size, seed, make, randomise=0.0):
+    EPOCHS_PER_POOL = 4
+
+    def __init__(self, coco, size, seed, make, randomise=0.0, painted=0.0):
         self.coco, self.size, self.seed, self.make, self.epoch = coco, size, seed, make, 0
-        self.randomise = randomise
+        self.randomise, self.painted, self.pool = randomise, painted, (None, None)
         self.crops = sum(kind == "crop" for _, kind in coco.classes)
 
     def __len__(self):
@@ -72,8 +78,17 @@ class Samples(torch.utils.data.Dataset):
             return self.make(augment.photometric(rng, image), ids, plants)
         image, ids, plants = augment.crop_and_turn(rng, *self.coco.load(i), self.size, (0.6, 1.7))
         image, ids, plants = augment.quarter_turn(rng, image, ids, plants)
+        if rng.random() < self.painted:
+            image, ids, plants = painted_plants.add(rng, image, ids, plants, self._pool(),
+                                                    self.coco.classes)
         image, ids = domain_randomisation.randomise(rng, image, ids, plants, self.crops)
         return self.make(image, ids, plants)
+
+    def _pool(self):
+        number = self.epoch // self.EPOCHS_PER_POOL
+        if self.pool[0] != number:
+            self.pool = (number, painted_plants.Pool((self.seed, number)))
+        return self.pool[1]
 
 
 def loader(samples, arguments, collate=None):
