@@ -24,7 +24,7 @@ class OneStageDetector::Implementation {
 
   Result<std::vector<Instance>> detect(const RgbdView& view) {
     if (const Status status = check_view(view); !status) return status.error();
-    const double mm_per_px = 1000.0 * view.ground_distance_m / view.camera.intrinsics().fx_px;
+    const double mm_per_px = view.ground_mm_per_px();
     const cv::Size input =
         network_input_size(view.bgr.size(), mm_per_px, model_.ground_resolution_mm_per_px,
                            parameters_.network.input_area_max_px);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "furrow_vision/row_evidence.hpp"
+
 namespace furrow::vision {
 namespace {
 
@@ -65,6 +67,28 @@ double familiarity_of(double certainty, const PlantContextParameters& p) {
   return std::clamp((certainty - p.familiar_from) / span, 0.0, 1.0);
 }
 
+/// Log-odds of a crop for each plant of an unfamiliar image. `colours` is empty where colour says
+/// nothing.
+std::vector<double> context_evidence(const RgbdView& view, const PlantContextParameters& p,
+                                     const std::vector<RelativeColour>& colours,
+                                     const std::vector<Instance>& plants) {
+  std::vector<double> evidence(plants.size());
+  std::vector<RowPlant> row_plants(plants.size());
+  for (std::size_t i = 0; i < plants.size(); ++i) {
+    const double learned = logit_of(plants[i].crop_probability);
+    evidence[i] = p.look_weight * (learned - p.look_middle);
+    if (!colours.empty()) {
+      evidence[i] += std::clamp(p.yellowness_weight * (colours[i].yellowness - p.yellowness_middle),
+                                -p.yellowness_evidence_max, p.yellowness_evidence_max);
+    }
+    row_plants[i] = {view.ground_mm_per_px() * plants[i].stem_px, plants[i].area_mm2, evidence[i]};
+  }
+  const auto row =
+      row_evidence(row_plants, {.evidence_max = p.row_evidence_max, .sd_mm = p.row_sd_mm});
+  for (std::size_t i = 0; i < plants.size(); ++i) evidence[i] += row[i];
+  return evidence;
+}
+
 /// Whether a pixel of the plant's mask lies within the reach of a point.
 bool reaches(const Instance& plant, const Eigen::Vector2d& at_px, double reach_px) {
   const cv::Rect window = cv::Rect(static_cast<int>(std::floor(at_px.x() - reach_px)),
@@ -94,8 +118,7 @@ void add_mask(const Instance& part, Instance& plant) {
 
 std::int64_t merge_into_crops(const RgbdView& view, const PlantContextParameters& p,
                               std::vector<Instance>& plants) {
-  const double mm_per_px = 1000.0 * view.ground_distance_m / view.camera.intrinsics().fx_px;
-  const double reach_px = p.crop_reach_mm / mm_per_px;
+  const double reach_px = p.crop_reach_mm / view.ground_mm_per_px();
   std::vector<std::size_t> crop_of(plants.size(), plants.size());
   for (std::size_t i = 0; i < plants.size(); ++i) {
     if (plants[i].crop_probability >= 0.5) continue;
@@ -196,6 +219,21 @@ void visit_colour(PlantContextParameters& p, ParameterVisitor& v) {
           p.yellowness_evidence_max);
 }
 
+void visit_row(PlantContextParameters& p, ParameterVisitor& v) {
+  v.visit({.name = "row_evidence_max",
+           .description = "Log-odds of a crop for a plant on the crop row of an unfamiliar image, "
+                          "and against one beside it; 0: the place does not count",
+           .min = 0.0,
+           .max = 20.0},
+          p.row_evidence_max);
+  v.visit({.name = "row_sd_mm",
+           .unit = "mm",
+           .description = "Standard deviation of crops across their row",
+           .min = 1.0,
+           .max = 1000.0},
+          p.row_sd_mm);
+}
+
 void visit_removal(PlantContextParameters& p, ParameterVisitor& v) {
   v.visit(
       {.name = "crop_reach_mm",
@@ -240,6 +278,7 @@ void visit_removal(PlantContextParameters& p, ParameterVisitor& v) {
 void PlantContextParameters::visit(ParameterVisitor& v) {
   visit_class_evidence(*this, v);
   visit_colour(*this, v);
+  visit_row(*this, v);
   visit_removal(*this, v);
 }
 
@@ -271,8 +310,7 @@ ContextReport apply_plant_context(const RgbdView& view, const cv::Mat& vegetatio
                                   std::vector<Instance>& plants) {
   ContextReport report;
   std::vector<RelativeColour> colours = relative_colours(view.bgr, vegetation, plants);
-  const bool with_colour = !colours.empty();
-  if (with_colour) {
+  if (!colours.empty()) {
     const double covered_px = parameters.rare_share * static_cast<double>(vegetation.total());
     const bool rare = cv::countNonZero(vegetation) < covered_px;
     report.dropped_as_not_green = drop_not_green(parameters, rare, colours, plants);
@@ -280,15 +318,11 @@ ContextReport apply_plant_context(const RgbdView& view, const cv::Mat& vegetatio
   report.stem_certainty = stem_certainty(plants);
   report.familiarity = familiarity_of(report.stem_certainty, parameters);
   if (report.familiarity >= 1.0) return report;
+  if (colour != ColourKind::kNatural) colours.clear();
+  const auto evidence = context_evidence(view, parameters, colours, plants);
   for (std::size_t i = 0; i < plants.size(); ++i) {
     const double learned = logit_of(plants[i].crop_probability);
-    double evidence = parameters.look_weight * (learned - parameters.look_middle);
-    if (with_colour && colour == ColourKind::kNatural) {
-      evidence += std::clamp(
-          parameters.yellowness_weight * (colours[i].yellowness - parameters.yellowness_middle),
-          -parameters.yellowness_evidence_max, parameters.yellowness_evidence_max);
-    }
-    const double fused = std::lerp(evidence, learned, report.familiarity);
+    const double fused = std::lerp(evidence[i], learned, report.familiarity);
     shift_towards_crops(fused - learned, classes, plants[i].class_scores);
     plants[i].crop_probability = crop_probability(plants[i].class_scores, classes);
   }

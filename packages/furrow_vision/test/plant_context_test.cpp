@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace furrow::vision {
 namespace {
@@ -92,6 +93,27 @@ TEST(PlantContext, TakesTheYellowerPlantForTheCropInAnUnfamiliarImage) {
   double sum = 0.0;
   for (const double score : scene.plants()[0].class_scores) sum += score;
   EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST(PlantContext, LetsTheRowDecideBetweenPlantsOfOneLook) {
+  // Four clear crops in a row, and two plants of one look: one in the row, one 120 mm beside it.
+  Scene scene;
+  for (int k = 0; k < 4; ++k) scene.add({10 + 70 * k, 140, 30, 30}, kYellowish, 2.0);
+  scene.add({250, 145, 20, 20}, kBluish, -3.0);
+  scene.add({250, 20, 20, 20}, kBluish, -3.0);
+  const auto at = [&](double row_evidence_max) {
+    Scene copy = scene;
+    copy.apply({.class_evidence = "context",
+                .row_evidence_max = row_evidence_max,
+                .row_sd_mm = 20.0,
+                .crop_reach_mm = 0.0});
+    return std::pair(copy.plants()[4].crop_probability, copy.plants()[5].crop_probability);
+  };
+  const auto [in_row, beside] = at(1.0);
+  const auto [in_row_alone, beside_alone] = at(0.0);
+  EXPECT_NEAR(in_row_alone, beside_alone, 1e-9);
+  EXPECT_GT(in_row, in_row_alone + 0.1);
+  EXPECT_LT(beside, beside_alone - 0.1);
 }
 
 TEST(PlantContext, LeavesColourOutInFalseColour) {

@@ -50,6 +50,11 @@ struct RgbdView {
   /// Rows of crop as image columns (at the ground), where the caller knows them, so that the
   /// detector need not find them. Empty: the detector's own estimate.
   std::vector<double> crop_row_u_px = {};
+
+  /// Ground resolution at ground_distance_m.
+  [[nodiscard]] double ground_mm_per_px() const {
+    return 1000.0 * ground_distance_m / camera.intrinsics().fx_px;
+  }
 };
 
 /// Finds plants in one image. May keep a state over frames (documented by each), so that calls are
@@ -82,15 +87,15 @@ void shift_towards_crops(double log_odds, const std::vector<SubClass>& classes,
 /// than a tenth have one, ground_distance_m.
 void measure_instance(const RgbdView& view, Instance& instance);
 
-/// Moves a stem that was found as a canopy's middle to the ground below it: leaves stand nearer to
-/// the camera, and appear farther from the image's centre than the stem's foot. Sets stem_px and
-/// stem_depth_m (of the ground). Takes the ground's depth from soil around the box and the canopy's
-/// from the mask; without depth in either, or where the canopy is not above the ground, nothing
-/// changes. @pre vegetation is CV_8U of the image's size, not zero where plants are.
+/// Moves a stem from the middle of its canopy to the ground below. Leaves are nearer to the camera,
+/// so that they appear farther from the image's centre than the foot of the stem. Sets stem_px and
+/// stem_depth_m (of the ground). The ground's depth is that of the soil around the box, the
+/// canopy's that of the mask. Nothing changes without depth in either, or where the canopy is not
+/// above the ground. @pre vegetation is CV_8U of the image's size, not zero where plants are.
 void place_stem_on_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance);
 
-/// Sets stem_depth_m, of a stem that was found as its foot on the ground, to the depth of the soil
-/// around the box; without depth there nothing changes. @pre as place_stem_on_ground.
+/// Sets stem_depth_m of a stem that was found on the ground to the depth of the soil around the
+/// box. Nothing changes without depth there. @pre as place_stem_on_ground.
 void set_stem_depth_to_ground(const RgbdView& view, const cv::Mat& vegetation, Instance& instance);
 
 }  // namespace furrow::vision

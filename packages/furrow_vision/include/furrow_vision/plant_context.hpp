@@ -21,6 +21,8 @@ struct PlantContextParameters {
   double yellowness_weight = 50.0;
   double yellowness_middle = 0.085;
   double yellowness_evidence_max = 3.0;
+  double row_evidence_max = 1.0;
+  double row_sd_mm = 50.0;
   double crop_reach_mm = 15.0;
   double crop_reach_area_mm2 = 600.0;
   double greenness_min = 0.04;
@@ -67,6 +69,8 @@ struct ContextReport {
 /// - The log-odds of a crop become look_weight x (learned log-odds - look_middle) + yellowness
 ///   evidence, where the crop of most fields is yellower than its weeds. In false colour the
 ///   yellowness says nothing and is left out.
+/// - Plants on the row that most crop plants share gain log-odds, those beside it lose them; see
+///   row_evidence.hpp.
 /// - A weed whose stem stands within `crop_reach_mm` of the leaves of a crop is taken for a part of
 ///   that crop: its mask goes to the crop. What is unsure is not sprayed.
 /// Merged plants are measured anew.
