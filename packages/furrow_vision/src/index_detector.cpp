@@ -37,49 +37,61 @@ void IndexDetector::reset() {
 
 Result<std::vector<Instance>> IndexDetector::detect(const RgbdView& view) {
   if (const Status status = check_view(view); !status) return status.error();
-  const IndexDetectorParameters& p = parameters_;
-  const auto& intrinsics = view.camera.intrinsics();
-  const double mm_per_px = 1000.0 * view.ground_distance_m / intrinsics.fx_px;
-  const double spacing_px = 1000.0 * p.row_spacing_m / mm_per_px;
-
-  const Vegetation vegetation = segment_vegetation(view.bgr, p.vegetation);
-  std::vector<Instance> plants;
-  if (vegetation.found) {
-    const int shorter = std::min(view.bgr.cols, view.bgr.rows);
-    const int cell = std::clamp(static_cast<int>(std::lround(p.grouping_resolution_mm / mm_per_px)),
-                                1, std::max(1, shorter / 16));
-    cv::Mat coarse = vegetation.mask;
-    if (cell > 1) {
-      cv::resize(vegetation.mask, coarse,
-                 {std::max(1, view.bgr.cols / cell), std::max(1, view.bgr.rows / cell)}, 0, 0,
-                 cv::INTER_AREA);
-      coarse = coarse >= 96;
-    }
-    const double cell_mm = cell * mm_per_px;
-    const PlantGroups groups =
-        group_plants(coarse, {.min_area_px = 0.7 * p.min_plant_area_mm2 / (cell_mm * cell_mm),
-                              .merge_gap_min_px = p.merge_gap_min_mm / cell_mm,
-                              .merge_gap_factor = p.merge_gap_factor,
-                              .merge_gap_max_px = p.merge_gap_max_mm / cell_mm,
-                              .closing_factor = p.closing_factor,
-                              .split_saddle_ratio = p.split_saddle_ratio,
-                              .split_min_area_px = p.split_min_area_mm2 / (cell_mm * cell_mm),
-                              .stem_kernel_factor = p.stem_kernel_factor,
-                              .max_plants = kMaxPlants});
-    plants = cut_instances(vegetation.mask, groups.labels, {1.0 / cell, 1.0 / cell},
-                           groups.stem_px.size());
-    for (std::size_t i = 0; i < plants.size(); ++i) {
-      // Centres of cells to centres of pixels.
-      plants[i].stem_px = groups.stem_px[i] * cell + Eigen::Vector2d::Constant(0.5 * (cell - 1));
-    }
-    std::erase_if(plants, [](const Instance& plant) { return plant.mask.empty(); });
+  std::vector<Instance> plants = find_plants(view);
+  update_rows(view, plants);
+  for (Instance& plant : plants) {
+    plant.score = plant.area_mm2 / (plant.area_mm2 + parameters_.min_plant_area_mm2);
+    plant.crop_probability = crop_probability_of(plant, view);
+    plant.class_scores = {plant.crop_probability, 1.0 - plant.crop_probability};
   }
+  return plants;
+}
+
+std::vector<Instance> IndexDetector::find_plants(const RgbdView& view) const {
+  const IndexDetectorParameters& p = parameters_;
+  const double mm_per_px = view.ground_mm_per_px();
+  const Vegetation vegetation = segment_vegetation(view.bgr, p.vegetation);
+  if (!vegetation.found) return {};
+  const int shorter = std::min(view.bgr.cols, view.bgr.rows);
+  const int cell = std::clamp(static_cast<int>(std::lround(p.grouping_resolution_mm / mm_per_px)),
+                              1, std::max(1, shorter / 16));
+  cv::Mat coarse = vegetation.mask;
+  if (cell > 1) {
+    cv::resize(vegetation.mask, coarse,
+               {std::max(1, view.bgr.cols / cell), std::max(1, view.bgr.rows / cell)}, 0, 0,
+               cv::INTER_AREA);
+    coarse = coarse >= 96;
+  }
+  const double cell_mm = cell * mm_per_px;
+  const PlantGroups groups =
+      group_plants(coarse, {.min_area_px = 0.7 * p.min_plant_area_mm2 / (cell_mm * cell_mm),
+                            .merge_gap_min_px = p.merge_gap_min_mm / cell_mm,
+                            .merge_gap_factor = p.merge_gap_factor,
+                            .merge_gap_max_px = p.merge_gap_max_mm / cell_mm,
+                            .closing_factor = p.closing_factor,
+                            .split_saddle_ratio = p.split_saddle_ratio,
+                            .split_min_area_px = p.split_min_area_mm2 / (cell_mm * cell_mm),
+                            .stem_kernel_factor = p.stem_kernel_factor,
+                            .max_plants = kMaxPlants});
+  std::vector<Instance> plants = cut_instances(vegetation.mask, groups.labels,
+                                               {1.0 / cell, 1.0 / cell}, groups.stem_px.size());
+  for (std::size_t i = 0; i < plants.size(); ++i) {
+    // Centres of cells to centres of pixels.
+    plants[i].stem_px = groups.stem_px[i] * cell + Eigen::Vector2d::Constant(0.5 * (cell - 1));
+  }
+  std::erase_if(plants, [](const Instance& plant) { return plant.mask.empty(); });
   for (Instance& plant : plants) {
     measure_instance(view, plant);
     place_stem_on_ground(view, vegetation.mask, plant);
   }
   std::erase_if(plants, [&](const Instance& i) { return i.area_mm2 < p.min_plant_area_mm2; });
+  return plants;
+}
 
+void IndexDetector::update_rows(const RgbdView& view, const std::vector<Instance>& plants) {
+  const IndexDetectorParameters& p = parameters_;
+  const double mm_per_px = view.ground_mm_per_px();
+  const double spacing_px = 1000.0 * p.row_spacing_m / mm_per_px;
   if (!view.crop_row_u_px.empty()) {
     crop_row_u_px_ = view.crop_row_u_px;
   } else if (spacing_px >= kMinRowSpacing_px) {
@@ -95,12 +107,6 @@ Result<std::vector<Instance>> IndexDetector::detect(const RgbdView& view) {
   } else {
     crop_row_u_px_.clear();
   }
-  for (Instance& plant : plants) {
-    plant.score = plant.area_mm2 / (plant.area_mm2 + p.min_plant_area_mm2);
-    plant.crop_probability = crop_probability_of(plant, view);
-    plant.class_scores = {plant.crop_probability, 1.0 - plant.crop_probability};
-  }
-  return plants;
 }
 
 double IndexDetector::crop_probability_of(const Instance& plant, const RgbdView& view) const {
@@ -130,6 +136,12 @@ double IndexDetector::crop_probability_of(const Instance& plant, const RgbdView&
 
 void IndexDetectorParameters::visit(ParameterVisitor& v) {
   vegetation.visit(v);
+  visit_grouping(v);
+  visit_rows(v);
+  visit_classes(v);
+}
+
+void IndexDetectorParameters::visit_grouping(ParameterVisitor& v) {
   v.visit({.name = "grouping_resolution_mm",
            .unit = "mm",
            .description = "Cell at which pieces are put together into plants",
@@ -183,6 +195,9 @@ void IndexDetectorParameters::visit(ParameterVisitor& v) {
            .min = 0.1,
            .max = 100.0},
           stem_kernel_factor);
+}
+
+void IndexDetectorParameters::visit_rows(ParameterVisitor& v) {
   v.visit({.name = "row_spacing_m",
            .unit = "m",
            .description = "Distance of the crop rows",
@@ -205,6 +220,9 @@ void IndexDetectorParameters::visit(ParameterVisitor& v) {
            .min = 1.0,
            .max = 100.0},
           row_contrast_min);
+}
+
+void IndexDetectorParameters::visit_classes(ParameterVisitor& v) {
   v.visit({.name = "crop_share",
            .description = "Share of crops among the plants, before anything is seen",
            .min = 0.001,

@@ -219,6 +219,22 @@ std::vector<Basin> collect_basins(const cv::Mat& own, const cv::Mat& closed,
   return basins;
 }
 
+/// Sorts basins by falling height of their peak; returns the new place of each.
+std::vector<std::size_t> sort_by_height(std::vector<Basin>& basins) {
+  std::vector<std::size_t> order(basins.size()), place(basins.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+    return basins[i].peak.height > basins[k].peak.height;
+  });
+  std::vector<Basin> sorted;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = i;
+    sorted.push_back(std::move(basins[order[i]]));
+  }
+  basins = std::move(sorted);
+  return place;
+}
+
 void split_group(const cv::Mat& labels, const std::vector<int>& group_of, int group,
                  const Piece& extent, const GroupingParameters& parameters, PlantGroups& plants) {
   const double closing = parameters.closing_factor * std::sqrt(extent.area_px);
@@ -247,17 +263,8 @@ void split_group(const cv::Mat& labels, const std::vector<int>& group_of, int gr
   PeakFlood flood(height, parameters.split_saddle_ratio);
 
   cv::Mat index;
-  std::vector<Basin> basins = collect_basins(own, closed, roi.tl(), flood, index);
-  std::vector<std::size_t> order(basins.size()), place(basins.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-    return basins[i].peak.height > basins[k].peak.height;
-  });
-  std::vector<Basin> sorted;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    place[order[i]] = i;
-    sorted.push_back(std::move(basins[order[i]]));
-  }
+  std::vector<Basin> sorted = collect_basins(own, closed, roi.tl(), flood, index);
+  const std::vector<std::size_t> place = sort_by_height(sorted);
   const auto plant_of = plants_of_basins(sorted, parameters.split_min_area_px);
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     if (plant_of[i] == i) continue;

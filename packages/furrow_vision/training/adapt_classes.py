@@ -4,8 +4,8 @@
   adapt_classes.py models/one_stage.pt OWN_DATA --out start.pt
   train_one_stage.py OWN_DATA --start start.pt --out OWN_MODEL
 
-Each crop of OWN_DATA/train.json starts as the mean of the crops that the weights know, each weed as
-the mean of their weeds; a class of the same name is kept. Works on one_stage.pt and mask_rcnn.pt.
+Each crop of OWN_DATA/train.json starts as the mean of the crops of the weights, each weed as the
+mean of their weeds. A class of the same name is kept. Works on one_stage.pt and mask_rcnn.pt.
 """
 
 import argparse

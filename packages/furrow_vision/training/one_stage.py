@@ -60,9 +60,14 @@ class OneStage(nn.Module):
 
 
 def loss(output, share, classes, heat, offsets, class_weights, crops):
-    """Sum of: cross entropy with Dice for plant, where it is known; penalty-reduced focal loss for
-    stems (Zhou et al. 2019); L1 for offsets; weighted cross entropy for classes on plant cells; and
-    crop against weed, of the first `crops` classes against the others."""
+    """Sum of the losses of the maps; the first `crops` classes are crops.
+
+    - Plant, where it is known: cross entropy with Dice.
+    - Stems: penalty-reduced focal loss (Zhou et al. 2019).
+    - Offsets: L1.
+    - Classes, on cells of plants: weighted cross entropy.
+    - Crop against weed: see _kind_loss.
+    """
     plant, stem, offset, logits = output[:, 0], output[:, 1], output[:, 2:4], output[:, 4:]
     known = share >= 0
     share = share.clamp(min=0)
@@ -99,8 +104,8 @@ def _dice(probability, share):
 
 
 def _kind_loss(logits, probability, share, classes, crops):
-    """Crop against weed: cross entropy of each cell of a plant, every one as dear as the other, and
-    Dice of both masks, which weighs the rarer kind as much as the other."""
+    """Crop against weed: cross entropy with equal weight for each cell of a plant, and Dice of both
+    masks. The Dice gives the rarer kind the same weight as the other."""
     odds = crop_log_odds(logits, crops)
     inside, crop = (classes >= 0).float(), ((classes >= 0) & (classes < crops)).float()
     entropy = F.binary_cross_entropy_with_logits(odds, crop, inside, reduction="sum") \

@@ -11,8 +11,8 @@ namespace furrow::vision {
 
 enum class ImageChannels { kGrey, kColour, kAsStored };
 
-// Through OpenCV's codecs, which are loaded with the first file: they bring more than a hundred
-// libraries with them, and a process that only moves an axis is to start without.
+// OpenCV's codecs are loaded with the first file. They depend on more than a hundred libraries,
+// which a process that only moves an axis does not need.
 
 /// 8-bit grey, 8-bit BGR, or what is in the file. Errors, with the file's name: kNotFound, and
 /// kParse for what is no image.

@@ -30,14 +30,22 @@ struct IndexDetectorParameters {
   double weed_area_mm2 = 800.0;
   double weed_area_log_sd = 1.2;
   void visit(ParameterVisitor& v);
+
+ private:
+  void visit_grouping(ParameterVisitor& v);
+  void visit_rows(ParameterVisitor& v);
+  void visit_classes(ParameterVisitor& v);
 };
 
-/// The baseline without learning: vegetation index and Otsu's threshold; pieces of leaf joined into
-/// plants when the gap between them is small for their size, and split where the distance transform
-/// has a narrow saddle; crop or weed by Bayes' rule from the distance to the crop row and the leaf
-/// area. Classes: "crop", "weed". Rows run along the image's columns, row_spacing_m apart; their
-/// phase is found in the image and smoothed over frames (state; reset() forgets it). The score is
-/// area / (area + min_plant_area_mm2): small specks are doubtful. At most kMaxPlants, the largest.
+/// The baseline without learning. Vegetation is found by an index and Otsu's threshold.
+///
+/// - Plants: pieces of leaf are joined where the gap between them is small for their size, and
+/// split
+///   where the distance transform has a narrow saddle. At most kMaxPlants, the largest.
+/// - Classes "crop" and "weed": by Bayes' rule from the distance to the crop row and the leaf area.
+/// - Rows run along the image's columns, row_spacing_m apart. Their phase is found in the image and
+///   smoothed over frames (state; reset() forgets it).
+/// - The score is area / (area + min_plant_area_mm2), low for specks.
 class IndexDetector final : public Detector {
  public:
   static constexpr int kMaxPlants = 2000;
@@ -55,6 +63,9 @@ class IndexDetector final : public Detector {
   [[nodiscard]] const std::vector<double>& crop_row_u_px() const { return crop_row_u_px_; }
 
  private:
+  /// Plants with mask and stem; their classes are still unset.
+  [[nodiscard]] std::vector<Instance> find_plants(const RgbdView& view) const;
+  void update_rows(const RgbdView& view, const std::vector<Instance>& plants);
   [[nodiscard]] double crop_probability_of(const Instance& plant, const RgbdView& view) const;
 
   IndexDetectorParameters parameters_;

@@ -56,10 +56,11 @@ enum class ClassMode {
   kCropWeed,
 };
 
-/// Average precision by COCO's procedure (Lin et al. 2014; cocoeval): at each IoU threshold .50 to
-/// .95 detections in the order of their score take the free truth of greatest IoU; precision made
-/// monotone and read at recall 0, .01, ..., 1; all areas; 100 detections an image and class; crowd
-/// regions neither count nor punish. Classes without a truth do not count in the mean.
+/// Average precision by COCO's procedure (Lin et al. 2014; cocoeval). At each IoU threshold .50 to
+/// .95 detections in the order of their score match the free annotation of greatest IoU. Precision
+/// is made monotone and read at recall 0, .01, ..., 1. All areas count, and 100 detections an image
+/// and class. Crowd regions neither count nor punish. Classes without an annotation do not count in
+/// the mean.
 class AveragePrecision {
  public:
   AveragePrecision(Overlap overlap, ClassMode mode) : overlap_(overlap), mode_(mode) {}

@@ -48,9 +48,9 @@ struct StemPeak {
   double probability = 0.0;
 };
 
-/// Local maxima of the stem map from the threshold on, finer than a cell by the offsets around them
-/// (weighted mean of where the 3 x 3 cells point to), no two nearer than the separation; strongest
-/// first, at most kMaxStems.
+/// Local maxima of the stem map from the threshold on, strongest first, at most kMaxStems. No two
+/// are nearer than the separation. The weighted mean of the points to which the 3 x 3 cells around
+/// a maximum point gives the place within the cell.
 constexpr int kMaxStems = 4000;
 [[nodiscard]] std::vector<StemPeak> find_stems(const OneStageMaps& maps, const CellGrid& grid,
                                                const OneStageDecodingParameters& parameters);
@@ -74,14 +74,21 @@ struct DecodedPlants {
   std::vector<DecodedPlant> plants;
 };
 
-/// Gives each cell of vegetation to a plant. A cell votes for its centre plus its offset; the
-/// nearest stem within vote_radius_mm + vote_radius_factor x |offset| takes it. A stem in
-/// vegetation for which no cell votes takes the cell that it stands in, whose ever that is. What no
-/// stem takes is grouped where it hangs together: it goes to the stem that it points to within
-/// three times that radius when it touches that stem's plant, else it is a plant of its own (stem:
-/// the median vote) from min_plant_area_mm2 on, else it goes to the plant that it touches, or is
-/// dropped. Class scores are the softmax of the mean class logits over the cells, weighted by the
-/// plant's probability. @pre vegetation is CV_8U of the maps' size.
+/// Assigns each cell of vegetation to a plant.
+///
+/// A cell votes for its centre plus its offset. The nearest stem within vote_radius_mm +
+/// vote_radius_factor x |offset| takes it. A stem in vegetation without a vote takes the cell that
+/// it stands in. Each connected group of the remaining cells is assigned by the first rule that
+/// holds:
+/// 1. It points to a stem within three times that radius and touches that stem's plant: it is a
+/// part
+///    of that plant.
+/// 2. It has min_plant_area_mm2: it is a plant, its stem the median vote.
+/// 3. It touches a plant: it is a part of that plant.
+/// 4. It is dropped.
+///
+/// Class scores are the softmax of the mean class logits over the cells, weighted by the plant's
+/// probability. @pre vegetation is CV_8U of the maps' size.
 [[nodiscard]] DecodedPlants decode_one_stage(const OneStageMaps& maps, const cv::Mat& vegetation,
                                              const CellGrid& grid,
                                              const OneStageDecodingParameters& parameters);

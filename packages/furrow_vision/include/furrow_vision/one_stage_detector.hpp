@@ -30,9 +30,11 @@ struct OneStageParameters {
 /// Detection uses OpenCV's global number of threads.
 class OneStageDetector final : public Detector {
  public:
-  /// Throws ConfigError: parameters out of range; a model file that is missing, malformed, of
-  /// another kind, or of other classes than `parameters.network.classes`; a network that is
-  /// missing, truncated, damaged, or does not fit its model file.
+  /// Throws ConfigError for:
+  /// - parameters out of range;
+  /// - a model file that is missing, malformed, of another kind, or of other classes than
+  ///   `parameters.network.classes`;
+  /// - a network that is missing, truncated, damaged, or does not fit its model file.
   OneStageDetector(const OneStageParameters& parameters, const std::filesystem::path& model_file);
   ~OneStageDetector() override;
 

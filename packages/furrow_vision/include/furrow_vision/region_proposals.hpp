@@ -18,8 +18,8 @@ struct RegionBox {
 /// Intersection over union of areas; 0 where both are empty.
 [[nodiscard]] double region_iou(const RegionBox& a, const RegionBox& b);
 
-/// One anchor an aspect ratio r, centred on 0, of the size's area: height size sqrt(r), width
-/// size / sqrt(r), half of each rounded to even (Ren et al. 2015, as torchvision has it).
+/// One anchor for each aspect ratio r, centred on 0, of the size's area. Its height is size sqrt(r)
+/// and its width size / sqrt(r), half of each rounded to even (Ren et al. 2015; torchvision).
 [[nodiscard]] std::vector<RegionBox> base_anchors(double size_px,
                                                   const std::vector<double>& aspect_ratios);
 
@@ -43,9 +43,9 @@ struct ProposalLimits {
   double iou_max = 0.7;
 };
 
-/// The most probable boxes of a pyramid's levels. Level i: objectness 1 x A x H x W (logits) and
-/// deltas 1 x 4A x H x W, both CV_32F, A the number of aspect ratios; its anchors stand
-/// anchors.strides_px[i] apart from 0 on. kInvalidArgument: maps that do not fit the layout.
+/// The most probable boxes of a pyramid's levels. Level i has objectness 1 x A x H x W (logits) and
+/// deltas 1 x 4A x H x W, both CV_32F, A the number of aspect ratios. Its anchors are
+/// anchors.strides_px[i] apart, from 0 on. kInvalidArgument: maps that do not fit the layout.
 [[nodiscard]] Result<std::vector<RegionBox>> propose_regions(const std::vector<cv::Mat>& objectness,
                                                              const std::vector<cv::Mat>& deltas,
                                                              const AnchorLayout& anchors,
@@ -61,8 +61,8 @@ struct ProposalLimits {
 void align_region(const cv::Mat& features, const RegionBox& box, double stride_px, int size,
                   float* out);
 
-/// Value of a square map of logits, stretched over a box, at each pixel of `pixels` (whose
-/// centres stand at + 0.5): bilinear between the centres of the map's cells, its rim outside them.
+/// Value of a square map of logits, stretched over a box, at each pixel of `pixels`, whose centres
+/// are at + 0.5. Bilinear between the centres of the map's cells, the value of the rim outside.
 /// CV_32F of the size of `pixels`.
 [[nodiscard]] cv::Mat stretch_mask(const cv::Mat& logits, const RegionBox& box,
                                    const cv::Rect& pixels);

@@ -21,17 +21,19 @@ struct VegetationFusionParameters {
   void visit(ParameterVisitor& v);
 };
 
-/// A vegetation mask (CV_8U, 255 plant) of the image's size from a network's coarse logit of
-/// "plant" (CV_32F, any size; it covers the same view) and the vegetation index, which is fine at
-/// the edges and holds on plants and light that the network never saw. With "both" a pixel is
-/// vegetation when
-///   w * clamp(logit, +-network_logit_max) - logit(plant_threshold)
-///     + clamp((index - t) / index_scale, +-2 network_logit_max) > 0,
-/// where w is network_weight times the trust r^agreement_exponent, r the share of the pixels that
-/// the index is sure of (four units above its threshold) in which the network sees plants too: one
-/// that misses many of them is probably shown what it was not trained for. The factor of Otsu's
-/// threshold t goes with the trust from threshold_factor to trusted_threshold_factor. An image in
-/// which the index finds soil only takes the network alone.
+/// A vegetation mask (CV_8U, 255 plant) of the image's size. It combines a network's coarse logit
+/// of "plant" (CV_32F, any size, the same view) and the vegetation index. The index is fine at the
+/// edges, and holds for plants and light that the network was not trained on. With "both" a pixel
+/// is vegetation when this sum is positive:
+///
+///     w * clamp(logit, +-network_logit_max) - logit(plant_threshold)
+///       + clamp((index - t) / index_scale, +-2 network_logit_max)
+///
+/// The weight w is network_weight times the trust r^agreement_exponent. Of the pixels that are four
+/// index units above the threshold, r is the share in which the network sees plants. A network that
+/// misses many of them is probably outside of its training. The factor of Otsu's threshold t goes
+/// with the trust from threshold_factor to trusted_threshold_factor. Where the index finds only
+/// soil, the network decides alone.
 [[nodiscard]] cv::Mat fuse_vegetation(const cv::Mat& plant_logit, const Vegetation& vegetation,
                                       const VegetationFusionParameters& parameters);
 

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Writes one_stage.onnx, a network that was not trained but made by hand: it averages cells of
-4 x 4 pixels, and reads plant from green, stem from blue, and crop or weed from red.
+"""Writes one_stage.onnx, a network that was made by hand and not trained.
+
+It averages cells of 4 x 4 pixels, and reads plant from green, stem from blue, and crop or weed from
+red.
 
     plant = 20 (2 G - R - B) - 4      stem = 40 B - 20
     crop = 10 R - 2                   weed = 2 - 10 R        offsets = 0
