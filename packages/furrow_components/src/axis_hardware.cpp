@@ -18,8 +18,9 @@ void AxisHardwareParameters::visit(ParameterVisitor& v) {
        .choices = {"simulated", "cia402_modbus"}},
       driver);
   v.visit({.name = "valve",
-           .description = "simulated: the simulator of the robot sprays; modbus_coils: an output "
-                          "(coil_*); gpio: a line of this computer (gpio_*)",
+           .description =
+               "simulated: the simulator of the robot sprays; modbus_coils: an output module "
+               "(coil_*); gpio: a line of this computer (gpio_*)",
            .choices = {"simulated", "modbus_coils", "gpio"}},
           valve);
   PrefixedVisitor simulated_visitor(v, "simulated_");

@@ -41,10 +41,11 @@ TEST_F(NozzleFile, ReadsWhatItWrites) {
 }
 
 TEST_F(NozzleFile, ErrorsNameTheCause) {
-  EXPECT_NE(error("nozzles:\n  - axis: left\n", "right").find("no entry for the axis 'right'"),
+  EXPECT_NE(error("nozzles:\n  - axis: left\n", "right").find("axis 'right' has no entry"),
             std::string::npos);
-  EXPECT_NE(error("nozzles:\n  - axis: a\n  - axis: a\n", "a").find("twice"), std::string::npos);
-  EXPECT_NE(error("nozzles:\n  - flow_mlps: 3\n", "a").find("does not name its axis"),
+  EXPECT_NE(error("nozzles:\n  - axis: a\n  - axis: a\n", "a").find("two entries"),
+            std::string::npos);
+  EXPECT_NE(error("nozzles:\n  - flow_mlps: 3\n", "a").find("an entry has no axis"),
             std::string::npos);
   EXPECT_NE(error("nozzles:\n  - axis: a\n    open_delay_s: -1\n", "a").find("open_delay_s"),
             std::string::npos);

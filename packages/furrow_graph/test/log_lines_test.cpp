@@ -155,5 +155,73 @@ TEST(LogLines, ReaderInTheProcessGetsThemOnRosout) {
   EXPECT_EQ(seen[0].stamp().nanosec(), 10'000'000u);
 }
 
+TEST(LogLines, ComponentsGetNoTextOfALibraryInLockstep) {
+  log::LogOptions options;
+  options.order = log::Order::kTime;
+  log::Log log(options);
+  const auto sink = std::make_shared<Memory>();
+  log.add(sink);
+  Registry registry;
+  add_stepper(registry, "axis", [&log](Context& context, int count) {
+    if (count == 1) log.write_foreign(log::Level::kError, "opencv", "bad image");
+    if (count == 2) context.log(log::Level::kInfo, "own");
+    if (count == 3) context.log(log::Level::kInfo, "later");
+    if (count == 5) context.request_stop("enough");
+  });
+  Texts seen;
+  ComponentClass reader{.name = "reader"};
+  reader.description.input<msgs::topics::Rosout>(Need::kOptional);
+  reader.make = [&seen](Context& context) {
+    context.input<msgs::topics::Rosout>(
+        [&seen](const auto& message) { seen.push_back(message->msg()); });
+    return std::make_unique<Component>();
+  };
+  registry.add(std::move(reader));
+  GraphSpec graph;
+  graph.components = {spec("axis", "axis"), spec("reader", "reader")};
+  Runtime runtime(graph, registry, {.clock = ClockMode::kLockstep, .threads = 1, .log = &log});
+  EXPECT_FALSE(runtime.run().failed);
+  EXPECT_EQ(seen, (Texts{"own"}));
+  log.flush();
+  ASSERT_EQ(sink->texts.size(), 3u);
+  EXPECT_EQ(sink->texts[0], "0 ms error opencv: bad image");
+}
+
+TEST(LogLines, FaultsOfTheTransportAreWarnings) {
+  Registry registry;
+  add_stepper(registry, "axis", [](Context& context, int count) {
+    if (count == 120) context.request_stop("enough");
+  });
+  registry.add([] {
+    ComponentClass reader{.name = "reader"};
+    reader.description.input<msgs::topics::Diagnostics>(Need::kOptional);
+    reader.make = [](Context& context) {
+      context.input<msgs::topics::Diagnostics>([](const auto&) {});
+      return std::make_unique<Component>();
+    };
+    return reader;
+  }());
+  log::Log log;
+  const auto sink = std::make_shared<Memory>();
+  log.add(sink);
+  GraphSpec graph;
+  graph.components = {spec("axis", "axis"), spec("reader", "reader")};
+  Runtime runtime(graph, registry,
+                  {.clock = ClockMode::kReal,
+                   .threads = 1,
+                   .transport_health =
+                       [] {
+                         return Health{.level = HealthLevel::kWarn,
+                                       .message = "deadline_missed/planner/plan 1",
+                                       .counters = {}};
+                       },
+                   .log = &log});
+  EXPECT_FALSE(runtime.run().failed);
+  log.flush();
+  ASSERT_FALSE(sink->texts.empty());
+  EXPECT_TRUE(sink->texts[0].ends_with("warn transport: deadline_missed/planner/plan 1"))
+      << sink->texts[0];
+}
+
 }  // namespace
 }  // namespace furrow::graph
