@@ -102,7 +102,7 @@ class Feeder final : public graph::Component {
     if (progress_ == Time()) progress_ = now;
     if (now - progress_ > kPatience) {
       std::string latched;
-      for (const auto cause : latched_) latched += " " + std::string(msgs::to_string(cause));
+      for (const auto& cause : latched_) latched += " " + std::string(msgs::to_string(cause));
       context_.request_stop("no progress; mode " + mode_ + ", latched:" + latched);
       return;
     }
