@@ -117,10 +117,11 @@ def _rosette(rng, count, length, spread=0.25):
 
 
 def beet(rng):
-    if rng.random() < 0.22:  # cotyledons, at times with the first pair of leaves
+    # Few are small: seedlings of beets and of broad-leaved weeds look alike.
+    if rng.random() < 0.12:  # cotyledons, at times with the first pair of leaves
         count, radius = int(rng.choice([0, 0, 2])), rng.uniform(5.0, 22.0)
     else:
-        count, radius = int(rng.integers(3, 13)), float(np.exp(rng.uniform(np.log(20.0), np.log(125.0))))
+        count, radius = int(rng.integers(3, 13)), float(np.exp(rng.uniform(np.log(28.0), np.log(125.0))))
     leaves = []
     width, petiole = rng.uniform(0.42, 0.85), rng.uniform(0.12, 0.45)
     if count < 5:

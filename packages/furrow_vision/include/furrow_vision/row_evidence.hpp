@@ -18,6 +18,9 @@ struct RowEvidenceParameters {
   double area_min_mm2 = 200.0;
 };
 
+/// Plants that vote for a row, at most.
+inline constexpr std::size_t kMaxRowPlants = 200;
+
 /// Log-odds of a crop for each plant, from its distance to the row that most crop plants share.
 ///
 /// Each plant votes with sqrt(area) x probability of a crop. The row is the line of any direction
@@ -25,7 +28,6 @@ struct RowEvidenceParameters {
 /// The row's share of all votes bounds the evidence: none up to 0.3, all of it at 1. Fewer than
 /// three plants above `area_min_mm2` are no row, and the evidence is 0. Only the kMaxRowPlants
 /// heaviest plants vote, so that the time is bounded.
-inline constexpr std::size_t kMaxRowPlants = 200;
 [[nodiscard]] std::vector<double> row_evidence(const std::vector<RowPlant>& plants,
                                                const RowEvidenceParameters& parameters);
 
