@@ -89,6 +89,7 @@ Result<cv::Mat> view_of(const sensor_msgs::msg::Image& message) {
   const bool fits =
       message.width() > 0 && message.height() > 0 && message.width() <= kMaxSide_px &&
       message.height() <= kMaxSide_px && message.step() >= row &&
+      message.step() % CV_ELEM_SIZE1(type) == 0 &&
       message.data().size() >= std::size_t{message.step()} * (message.height() - 1) + row;
   if (!fits) {
     return Error{ErrorCode::kInvalidArgument, "the image size does not match its data"};

@@ -28,7 +28,7 @@ std::uint8_t byte(double value) {
 using Pixel = std::function<std::vector<std::uint8_t>(int u, int v)>;
 
 sensor_msgs::msg::Image encode(const std::string& encoding, const Pixel& pixel) {
-  constexpr int kPadding = 3;  // rows may end in bytes that mean nothing
+  constexpr int kPadding = 4;  // rows may end in bytes that mean nothing
   sensor_msgs::msg::Image message;
   message.width(kWidth_px);
   message.height(kHeight_px);
@@ -144,6 +144,14 @@ TEST(ImageEncodings, TheUnitOfADepthOfIntegersIsAParameter) {
     ASSERT_TRUE(depth_m.ok());
     EXPECT_FLOAT_EQ(depth_m->at<float>(3, 4), 1.0F);
   }
+}
+
+// Rows that begin at half a value would be read from addresses that are not aligned.
+TEST(ImageEncodings, RowsThatBeginAtHalfAValueAreAnError) {
+  auto message = encode("16UC1", [](int, int) -> std::vector<std::uint8_t> { return {0, 1}; });
+  ASSERT_TRUE(depth_m_of(message).ok());
+  message.step(message.step() - 1);
+  EXPECT_FALSE(depth_m_of(message).ok());
 }
 
 }  // namespace
