@@ -72,7 +72,7 @@ class RenderedRowTest(FurrowCase):
     def test_report_is_whole_and_self_contained(self):
         out = self.runs[0][0]
         self.assertEqual(sorted(path.name for path in out.iterdir()),
-                         ["as_applied.geojson", "ledger.csv", "map.svg", "report.html",
+                         ["as_applied.geojson", "ledger.csv", "map.svg", "report.html", "run.log",
                           "summary.json"])
         page = (out / "report.html").read_text()
         self.assertTrue(page.rstrip().endswith("</html>"))
