@@ -53,6 +53,15 @@ class Log(FurrowCase):
             self.assert_refused(["run", "--out", self.out, "--log-level", level], "--log-level",
                                 "COMPONENT=LEVEL")
 
+    def test_a_level_of_an_unknown_component_is_refused(self):
+        for command in ("run", "up"):
+            self.assert_refused([command, "--out", self.out, "--log-level", "plnner=debug"],
+                                "plnner", "did you mean 'planner'?")
+
+    def test_the_end_of_a_run_is_its_last_line(self):
+        self.run_graph(*SHORT)
+        self.assertIn("the run is finished", self.log().splitlines()[-1])
+
     def test_a_run_that_does_not_start_leaves_no_log(self):
         self.assert_refused(["run", "--no-dds", "--out", self.out,
                              "--set", "planner.tool_file=nothing.urdf"], "nothing.urdf")

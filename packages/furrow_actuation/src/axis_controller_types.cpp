@@ -67,14 +67,13 @@ void AxisControllerParameters::visit_firing(ParameterVisitor& v) {
            .min = 0.001,
            .max = 5.0},
           rest_speed_mps);
-  v.visit(
-      {.name = "settled_error_m",
-       .unit = "m",
-       .description = "but in passing, no drop leaves while the axis is measured farther from its "
-                      "setpoint: an axis that does not follow is not at rest",
-       .min = 0.0001,
-       .max = 0.1},
-      settled_error_m);
+  v.visit({.name = "settled_error_m",
+           .unit = "m",
+           .description =
+               "an axis farther from its setpoint is not at rest: no spray, except in passing",
+           .min = 0.0001,
+           .max = 0.1},
+          settled_error_m);
   v.visit({.name = "max_fire_speed_mps",
            .unit = "m/s",
            .description = "the axis moves no faster than this while the valve is open",

@@ -39,10 +39,10 @@ void ToolSafetyParameters::visit(ParameterVisitor& v) {
                    10.0),
           odometry_deadline_s);
   v.visit(
-      deadline("odometry_delay_limit_s",
-               "odometry that arrives later after its stamp, or earlier before it, is not used: "
-               "a late message cannot be told from a clock that is off",
-               0.001, 10.0),
+      deadline(
+          "odometry_delay_limit_s",
+          "odometry that arrives farther from its stamp is not used, since its clock may be off",
+          0.001, 10.0),
       odometry_delay_limit_s);
   v.visit(deadline("heartbeat_deadline_s",
                    "without a heartbeat of the planner for longer: safe state", 0.01, 10.0),

@@ -74,7 +74,9 @@ int run(const RunCommandOptions& options) {
   });
   const bool has_report = session.reports() && outcome.record != nullptr;
   const bool well = !outcome.result.failed && outcome.result.reason == "finished";
-  if (!well || outcome.interrupted) {
+  if (well && !outcome.interrupted) {
+    log.write(log::Level::kInfo, "the run is finished");
+  } else {
     log.write(log::Level::kFatal,
               "the run ended early: " +
                   (outcome.interrupted ? std::string("interrupted") : outcome.result.reason) +

@@ -1,6 +1,5 @@
 #include "run_log.hpp"
 
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
@@ -10,18 +9,13 @@
 namespace furrow::cli {
 namespace {
 
-Time unix_time() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return Time::from_nanoseconds(std::chrono::nanoseconds(now).count());
-}
-
 log::LogOptions log_options(const launch::RunOptions& options) {
   log::LogOptions result;
   for (const std::string& level : options.log_levels) result.levels.set(level);
   if (options.lockstep()) {
     result.order = log::Order::kTime;
   } else {
-    result.now = unix_time;
+    result.now = log::unix_time;
   }
   return result;
 }

@@ -59,24 +59,7 @@ struct Parameters {
              .min = 0.0,
              .max = 100.0},
             run_out_m);
-    v.visit({.name = "rate_hz",
-             .unit = "Hz",
-             .description = "rate of the odometry",
-             .min = 1.0,
-             .max = 1000.0},
-            rate_hz);
-    v.visit({.name = "imu_rate_hz",
-             .unit = "Hz",
-             .description = "rate of the IMU",
-             .min = 1.0,
-             .max = 1000.0},
-            imu_rate_hz);
-    v.visit({.name = "gnss_rate_hz",
-             .unit = "Hz",
-             .description = "rate of the GNSS",
-             .min = 0.1,
-             .max = 100.0},
-            gnss_rate_hz);
+    visit_rates(v);
     v.visit({.name = "follow_speed_requests",
              .description = "follow robot/speed_request, never faster than speed_mps"},
             follow_speed_requests);
@@ -100,6 +83,7 @@ struct Parameters {
     valve_faults.visit(fault_visitor);
   }
 
+ private:
   void visit_rates(ParameterVisitor& v) {
     v.visit({.name = "rate_hz",
              .unit = "Hz",

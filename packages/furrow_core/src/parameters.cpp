@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "furrow_core/text.hpp"
+
 namespace furrow {
 namespace {
 
@@ -77,32 +79,10 @@ void check_value(const ParameterInfo& info, const GivenParameter& given) {
              given.value);
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({change, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
 std::string nearest_name(const std::vector<DeclaredParameter>& declared, const std::string& name) {
-  const DeclaredParameter* best = nullptr;
-  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
-  for (const auto& candidate : declared) {
-    const std::size_t distance = edit_distance(candidate.info.name, name);
-    if (distance < best_distance) {
-      best = &candidate;
-      best_distance = distance;
-    }
-  }
-  return best != nullptr ? "; did you mean '" + best->info.name + "'?" : "";
+  std::vector<std::string> names;
+  for (const auto& candidate : declared) names.push_back(candidate.info.name);
+  return did_you_mean(name, names);
 }
 
 const GivenParameter* find(const std::vector<GivenParameter>& given, const std::string& name) {

@@ -34,5 +34,19 @@ TEST(TextTable, AlignsTheFirstColumnLeftAndTheOthersRight) {
             "short\n");
 }
 
+TEST(Text, TrimmedHasNoBlanksAtEitherEnd) {
+  EXPECT_EQ(trimmed(" \ta b\t "), "a b");
+  EXPECT_EQ(trimmed(" \t"), "");
+  EXPECT_EQ(trimmed(""), "");
+  EXPECT_EQ(trimmed("\r\na ", "\r\n"), "a ");
+}
+
+TEST(Text, ATypoIsAnsweredByTheNearestName) {
+  const std::vector<std::string> names = {"planner", "tracker"};
+  EXPECT_EQ(did_you_mean("plnner", names), "; did you mean 'planner'?");
+  EXPECT_EQ(did_you_mean("camera_simulator", names), "");
+  EXPECT_EQ(did_you_mean("planner", {}), "");
+}
+
 }  // namespace
 }  // namespace furrow

@@ -50,13 +50,6 @@ std::optional<std::vector<std::string>> csv_cells(std::string_view line, char se
   return cells;
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
 std::string take_byte_order_mark(std::string_view& text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     return "1: the file is UTF-16: save it as \"CSV UTF-8\"";

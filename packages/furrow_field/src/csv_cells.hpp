@@ -16,9 +16,6 @@ namespace furrow::field {
 [[nodiscard]] std::optional<std::vector<std::string>> csv_cells(std::string_view line,
                                                                 char separator);
 
-/// Without spaces and tabs at both ends.
-[[nodiscard]] std::string_view trimmed(std::string_view text);
-
 /// Removes a UTF-8 byte order mark from the front of `text`. Returns "LINE: message" for the user
 /// when the text is not UTF-8, else an empty string.
 [[nodiscard]] std::string take_byte_order_mark(std::string_view& text);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "csv_cells.hpp"
+#include "furrow_core/text.hpp"
 #include "furrow_core/utf8.hpp"
 #include "numbers.hpp"
 

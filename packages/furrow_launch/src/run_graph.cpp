@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <set>
 
+#include "furrow_core/text.hpp"
 #include "furrow_graph/graph_check.hpp"
+#include "furrow_log/level.hpp"
 #include "furrow_recording/player.hpp"
 
 namespace furrow::launch {
@@ -124,6 +126,20 @@ void check_recording(const graph::GraphSpec& graph, graph::Registry& registry) {
   }
 }
 
+/// Throws ConfigError for a malformed level, and for one of a component that does not exist.
+void check_log_levels(const graph::GraphSpec& graph, const std::vector<std::string>& settings) {
+  log::Levels levels;
+  for (const std::string& setting : settings) levels.set(setting);
+  std::vector<std::string> writers = {"furrow",  "supervisor", "transport",
+                                      "fastdds", "opencv",     "log"};
+  for (const auto& component : graph.components) writers.push_back(component.name);
+  for (const std::string& name : levels.components()) {
+    if (std::ranges::find(writers, name) != writers.end()) continue;
+    throw ConfigError("--log-level " + name + ": no component '" + name + "' in graph '" +
+                      graph.name + "', nor a library" + did_you_mean(name, writers));
+  }
+}
+
 }  // namespace
 
 PreparedGraph prepare_run(const RunOptions& options, graph::Registry& registry) {
@@ -140,6 +156,7 @@ PreparedGraph prepare_run(const RunOptions& options, graph::Registry& registry) 
   if (!options.record.empty()) add_recorder(prepared.spec, options);
   graph::apply_settings(prepared.spec, of_recordings);
   if (!options.recordings.empty()) check_recording(prepared.spec, registry);
+  check_log_levels(prepared.spec, options.log_levels);
   return prepared;
 }
 

@@ -56,4 +56,10 @@ Level Levels::of(std::string_view component) const {
   return it == of_.end() ? all_ : it->second;
 }
 
+std::vector<std::string> Levels::components() const {
+  std::vector<std::string> names;
+  for (const auto& [name, level] : of_) names.push_back(name);
+  return names;
+}
+
 }  // namespace furrow::log

@@ -1,6 +1,7 @@
 #include "furrow_log/log.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -156,6 +157,11 @@ LogCounters Log::counters() const {
   counters.failed = impl_->sinks.failed();
   if (impl_->writer) counters.dropped = impl_->writer->dropped();
   return counters;
+}
+
+Time unix_time() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return Time::from_nanoseconds(std::chrono::nanoseconds(now).count());
 }
 
 }  // namespace furrow::log

@@ -24,6 +24,15 @@ TEST(Levels, ComponentOverridesTheCommonLevel) {
   EXPECT_EQ(levels.of("tracker"), Level::kWarn);
 }
 
+TEST(Levels, ComponentsAreThoseWithALevelOfTheirOwn) {
+  Levels levels;
+  levels.set("warn");
+  EXPECT_TRUE(levels.components().empty());
+  levels.set("tracker=debug");
+  levels.set("planner=info");
+  EXPECT_EQ(levels.components(), (std::vector<std::string>{"planner", "tracker"}));
+}
+
 TEST(Levels, MalformedSettingNamesTheForms) {
   Levels levels;
   for (const char* setting : {"loud", "", "planner=", "=warn", "planner=WARN"}) {

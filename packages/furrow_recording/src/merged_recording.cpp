@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "furrow_recording/recording_reader.hpp"
+#include "message_tally.hpp"
 
 namespace furrow::recording {
 namespace {
@@ -185,16 +186,12 @@ class MergedRecording final : public RecordingReader {
   void add_statistics(const mcap::Statistics& one, const ChannelMap& channels) {
     mcap::Statistics& all = *info_.summary.statistics;
     all.chunk_count += one.chunk_count;
-    if (one.message_count == 0) {
-      return;
-    }
-    const bool first = all.message_count == 0;
-    all.start_time = first ? one.start_time : std::min(all.start_time, one.start_time);
-    all.end_time = first ? one.end_time : std::max(all.end_time, one.end_time);
-    all.message_count += one.message_count;
+    mcap::MessageTally tally{
+        .start = one.start_time, .end = one.end_time, .messages = one.message_count};
     for (const auto& [id, count] : one.channel_message_counts) {
-      all.channel_message_counts[channels.at(id)] += count;
+      tally.by_channel[channels.at(id)] += count;
     }
+    mcap::add_to(all, tally);
   }
 
   std::vector<std::unique_ptr<RecordingReader>> readers_;

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "furrow_core/text.hpp"
 #include "furrow_msgs/idl_schema.hpp"
 
 namespace furrow::recording {
@@ -50,14 +51,6 @@ std::optional<FieldKind> find_primitive(const Table& table, std::string_view nam
   return at == table.end() ? std::nullopt : std::optional(at->kind);
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) {
-    return {};
-  }
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
 bool is_word(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -92,7 +85,7 @@ class DefinitionParser {
     while (!text_.empty() && !fault_) {
       const std::size_t end = std::min(text_.find('\n'), text_.size());
       ++line_;
-      take_line(trimmed(text_.substr(0, end)));
+      take_line(trimmed(text_.substr(0, end), kBlank));
       text_.remove_prefix(std::min(end + 1, text_.size()));
     }
     if (fault_) {
@@ -123,7 +116,7 @@ class DefinitionParser {
       return;
     }
     if (line.starts_with("MSG:")) {
-      begin_type(trimmed(line.substr(4)));
+      begin_type(trimmed(line.substr(4), kBlank));
       return;
     }
     if (line.empty() || line.starts_with('#')) {
@@ -134,7 +127,7 @@ class DefinitionParser {
       fail("'" + std::string(line.substr(0, 60)) + "' is not a field");
       return;
     }
-    take_member(line.substr(0, space), trimmed(line.substr(space)));
+    take_member(line.substr(0, space), trimmed(line.substr(space), kBlank));
   }
 
   void begin_type(std::string_view name) {
@@ -153,7 +146,7 @@ class DefinitionParser {
   void take_member(std::string_view type, std::string_view rest) {
     const std::size_t name_end = std::min(rest.find_first_of(" \t=#"), rest.size());
     const std::string_view name = rest.substr(0, name_end);
-    const std::string_view behind = trimmed(rest.substr(name_end));
+    const std::string_view behind = trimmed(rest.substr(name_end), kBlank);
     if (!is_word(name)) {
       fail("'" + std::string(name.substr(0, 60)) + "' is not a name");
       return;
@@ -162,8 +155,9 @@ class DefinitionParser {
     if (behind.starts_with('=')) {
       // A "#" is a part of a text, and begins a comment behind a number.
       const std::size_t comment = type.starts_with("string") ? behind.npos : behind.find('#');
-      current.constants.push_back(std::string(type) + " " + std::string(name) + "=" +
-                                  std::string(trimmed(behind.substr(0, comment).substr(1))));
+      current.constants.push_back(
+          std::string(type) + " " + std::string(name) + "=" +
+          std::string(trimmed(behind.substr(0, comment).substr(1), kBlank)));
       return;
     }
     MessageField field;

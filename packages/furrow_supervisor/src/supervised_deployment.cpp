@@ -1,7 +1,6 @@
 #include "furrow_supervisor/supervised_deployment.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <memory>
 #include <system_error>
@@ -19,11 +18,6 @@ namespace furrow::supervisor {
 namespace {
 
 constexpr char kLogName[] = "supervisor";
-
-Time unix_time() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return Time::from_nanoseconds(std::chrono::nanoseconds(now).count());
-}
 
 std::string pick_host(const graph::DeploymentSpec& deployment, const std::string& wanted) {
   std::string names;
@@ -130,7 +124,7 @@ void SupervisedDeployment::open_logs(const std::filesystem::path& out, log::Log&
 }
 
 int SupervisedDeployment::run(const RunParameters& parameters) const {
-  log::Log log({.repeat_period = Duration(), .now = unix_time});
+  log::Log log({.repeat_period = Duration(), .now = log::unix_time});
   open_logs(parameters.out, log);
   const auto server = make_discovery_server(deployment_, host_, dds_);
   DeploymentHealth health(dds_, parameters.resume);

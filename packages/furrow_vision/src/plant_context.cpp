@@ -221,8 +221,8 @@ void visit_colour(PlantContextParameters& p, ParameterVisitor& v) {
 
 void visit_row(PlantContextParameters& p, ParameterVisitor& v) {
   v.visit({.name = "row_evidence_max",
-           .description = "Log-odds of a crop for a plant on the crop row of an unfamiliar image, "
-                          "and against one beside it; 0: the place does not count",
+           .description = "Log-odds of a crop that the place on or beside the row of an "
+                          "unfamiliar image gives; 0: none",
            .min = 0.0,
            .max = 20.0},
           p.row_evidence_max);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace furrow::log {
 
@@ -25,6 +26,8 @@ class Levels {
   /// Applies "LEVEL" or "COMPONENT=LEVEL". Throws ConfigError.
   void set(std::string_view setting);
   [[nodiscard]] Level of(std::string_view component) const;
+  /// The components that have a level of their own, sorted.
+  [[nodiscard]] std::vector<std::string> components() const;
 
  private:
   Level all_ = Level::kInfo;

@@ -43,6 +43,9 @@ enum class Order : std::uint8_t {
              ///< order does not depend on threads where each component's lines do not.
 };
 
+/// Of the computer's clock, since 1970.
+[[nodiscard]] Time unix_time();
+
 struct LogOptions {
   Levels levels;
   Order order = Order::kArrival;
