@@ -2,9 +2,21 @@
 
 #include <cmath>
 
+#include "furrow_core/text.hpp"
 #include "furrow_graph/stamp.hpp"
 
 namespace furrow::components {
+
+bool in_field(double x_m, double y_m) {
+  // Written so that NaN fails.
+  return std::abs(x_m) <= kMaxField_m && std::abs(y_m) <= kMaxField_m;
+}
+
+std::string outside_field(std::string_view topic, const geometry::Pose2& X_FB) {
+  return std::string(topic) + " starts at x " + fixed(X_FB.x_m, 1) + " m, y " + fixed(X_FB.y_m, 1) +
+         " m, more than 10 km from the origin of the field frame; is it a "
+         "map frame, such as UTM?";
+}
 
 std_msgs::msg::Header header(Time stamp, const std::string& frame) {
   std_msgs::msg::Header message;

@@ -15,7 +15,7 @@ using localization::GnssPosition;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-// sensor_msgs/NavSatStatus and NavSatFix; the status is a signed byte there.
+// Constants of sensor_msgs/NavSatStatus, whose status is a signed byte, and of NavSatFix.
 constexpr std::uint8_t kNoFix = 255;
 constexpr std::uint8_t kPlainFix = 0;
 constexpr std::uint8_t kSatelliteAugmented = 1;
@@ -64,28 +64,36 @@ FixQuality quality_of(std::uint8_t status, double sigma_m) {
 void GeoreferenceParameters::visit(ParameterVisitor& v) {
   v.visit({.name = "origin_latitude_deg",
            .unit = "deg",
-           .description = "of the field frame's origin, WGS 84",
+           .description = "latitude of the origin of the field frame, WGS 84; the same in all "
+                          "components",
            .min = -90.0,
            .max = 90.0},
           origin_latitude_deg);
   v.visit({.name = "origin_longitude_deg",
            .unit = "deg",
-           .description = "of the field frame's origin, WGS 84",
+           .description = "longitude of the origin of the field frame, WGS 84; the same in all "
+                          "components",
            .min = -180.0,
            .max = 180.0},
           origin_longitude_deg);
   v.visit({.name = "origin_altitude_m",
            .unit = "m",
-           .description = "of the field frame's origin above the ellipsoid",
+           .description = "height of the origin of the field frame above the ellipsoid; the same "
+                          "in all components",
            .min = -1000.0,
            .max = 10000.0},
           origin_altitude_m);
   v.visit({.name = "row_angle_deg",
            .unit = "deg",
-           .description = "direction of travel along the rows, counter-clockwise from east",
+           .description = "direction of travel along the rows, counter-clockwise from east; the "
+                          "same in all components",
            .min = -360.0,
            .max = 360.0},
           row_angle_deg);
+}
+
+std::vector<std::string> GeoreferenceParameters::names() {
+  return {"origin_latitude_deg", "origin_longitude_deg", "origin_altitude_m", "row_angle_deg"};
 }
 
 Georeference::Georeference(const GeoreferenceParameters& parameters)
@@ -124,7 +132,7 @@ sensor_msgs::msg::NavSatFix Georeference::to_msg(const GnssPosition& position) c
   fix.position_covariance()[1] = covariance_E(0, 1);
   fix.position_covariance()[3] = covariance_E(1, 0);
   fix.position_covariance()[4] = covariance_E(1, 1);
-  // Receivers are about half as good in height.
+  // Receivers have about twice the variance in height.
   fix.position_covariance()[8] = 2.0 * covariance_E.trace();
   return fix;
 }

@@ -105,6 +105,7 @@ class Localization final : public graph::Component {
   static void describe(graph::Description& d) {
     d.doc("Estimates the pose of the base in the field frame.")
         .parameters<Parameters>()
+        .shared_parameters(GeoreferenceParameters::names())
         .input<topics::WheelOdometry>()
         .input<topics::Imu>(graph::Need::kOptional)
         .input<topics::GnssFix>(graph::Need::kOptional)
@@ -150,6 +151,12 @@ class Localization final : public graph::Component {
     const BaseOdometry wheels = from_msg(message);
     // The frame in which the wheels start is the field frame. Only their first pose is used.
     if (!started_) {
+      if (!in_field(wheels.X_FB.x_m, wheels.X_FB.y_m)) {
+        context_.request_stop(
+            context_.name() + ": " + outside_field("wheel/odometry", wheels.X_FB) + " Set " +
+            context_.name() + ".start=parameters to start at the initial pose of the parameters");
+        return;
+      }
       const Status reset =
           estimator_->reset(wheels.stamp, wheels.X_FB, start_covariance(parameters_));
       if (!reset.ok()) {

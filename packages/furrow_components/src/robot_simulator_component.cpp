@@ -130,6 +130,7 @@ class RobotSimulator final : public graph::Component {
   static void describe(graph::Description& d) {
     d.doc("Simulates the robot: true motion, wheel odometry, IMU, GNSS, landing of sprays.")
         .parameters<Parameters>()
+        .shared_parameters(GeoreferenceParameters::names())
         .input<topics::AxisEvent>(graph::Need::kOptional)
         .input<topics::AxisState>(graph::Need::kOptional)
         .input<topics::TrueField>(graph::Need::kOptional)

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_components/field_conversion.hpp"
 #include "furrow_graph/stamp.hpp"
 #include "furrow_msgs/enums.hpp"
 
@@ -13,8 +14,10 @@ namespace {
 using ledger::Action;
 using ledger::Reason;
 
-int axis_index(std::span<const std::string> axes, const std::string& name) {
-  const auto it = std::ranges::find(axes, name);
+using Axes = std::span<const geometry::AxisModel>;
+
+int axis_index(Axes axes, const std::string& name) {
+  const auto it = std::ranges::find(axes, name, &geometry::AxisModel::name);
   return it == axes.end() ? -1 : static_cast<int>(it - axes.begin());
 }
 
@@ -66,8 +69,7 @@ Reason reason_of(msgs::AxisEventKind event) {
   return Reason::kNone;
 }
 
-Result<ledger::Decision> to_decision(const furrow_msgs::msg::Decision& message,
-                                     std::span<const std::string> axes) {
+Result<ledger::Decision> to_decision(const furrow_msgs::msg::Decision& message, Axes axes) {
   const auto kind = msgs::from_msg(message.decision());
   if (!kind.ok()) return kind.error();
   ledger::Decision decision{.time = graph::from_msg(message.stamp()),
@@ -90,7 +92,7 @@ ledger::TrackView to_track_view(const furrow_msgs::msg::Track& message) {
       .area_mm2 = message.area_mm2()};
 }
 
-Status add_decisions(const furrow_msgs::msg::RunRecord& message, std::span<const std::string> axes,
+Status add_decisions(const furrow_msgs::msg::RunRecord& message, Axes axes,
                      ledger::RunRecord& record) {
   for (const auto& entry : message.decisions()) {
     const auto decision = to_decision(entry, axes);
@@ -116,8 +118,36 @@ Status add_decisions(const furrow_msgs::msg::RunRecord& message, std::span<const
   return {};
 }
 
-void add_paths(const furrow_msgs::msg::RunRecord& message, std::span<const std::string> axes,
-               ledger::RunRecord& record) {
+void add_true_sprays(const furrow_msgs::msg::RunRecord& message, Axes axes,
+                     ledger::RunRecord& record) {
+  for (const auto& spray : message.sprays()) {
+    record.sprays.push_back({.time = graph::from_msg(spray.header().stamp()),
+                             .axis = axis_index(axes, spray.axis()),
+                             .p_F_m = from_point(spray.centre()).head<2>(),
+                             .radius_m = spray.radius_m(),
+                             .aim_F_m = from_point(spray.aim()).head<2>(),
+                             .track_ids = spray.track_ids(),
+                             .commanded = spray.stop_id() != 0});
+  }
+}
+
+/// The openings of the valves. Where they landed is known only as the drivers predicted it.
+void add_driver_sprays(const furrow_msgs::msg::RunRecord& message, Axes axes,
+                       ledger::RunRecord& record) {
+  for (const auto& event : message.events()) {
+    const int axis = axis_index(axes, event.axis());
+    if (event.event() != msgs::AxisEventKind::kSprayed || axis < 0) continue;
+    record.sprays.push_back(
+        {.time = graph::from_msg(event.header().stamp()),
+         .axis = axis,
+         .p_F_m = from_point(event.landing()).head<2>(),
+         .radius_m = axes[static_cast<std::size_t>(axis)].nozzle.footprint_radius_m,
+         .aim_F_m = from_point(event.aim()).head<2>(),
+         .track_ids = event.track_ids()});
+  }
+}
+
+void add_paths(const furrow_msgs::msg::RunRecord& message, Axes axes, ledger::RunRecord& record) {
   record.info.axis_travel_m.assign(axes.size(), 0.0);
   for (const auto& path : message.paths()) {
     const int axis = axis_index(axes, path.axis());
@@ -131,25 +161,29 @@ void add_paths(const furrow_msgs::msg::RunRecord& message, std::span<const std::
 
 }  // namespace
 
-Result<ledger::RunRecord> from_msg(const furrow_msgs::msg::RunRecord& message,
-                                   std::span<const std::string> axes) {
+Result<ledger::RunRecord> from_msg(const furrow_msgs::msg::RunRecord& message, Axes axes) {
   ledger::RunRecord record;
   record.info.speed_mps = message.mean_speed_mps();
   record.info.distance_m = message.distance_m();
   record.info.duration_s = message.duration_s();
   for (const auto& track : message.tracks()) record.tracks.push_back(to_track_view(track));
   if (const Status added = add_decisions(message, axes, record); !added.ok()) return added.error();
-  for (const auto& spray : message.sprays()) {
-    record.sprays.push_back({.time = graph::from_msg(spray.header().stamp()),
-                             .axis = axis_index(axes, spray.axis()),
-                             .p_F_m = from_point(spray.centre()).head<2>(),
-                             .radius_m = spray.radius_m(),
-                             .aim_F_m = from_point(spray.aim()).head<2>(),
-                             .track_ids = spray.track_ids(),
-                             .commanded = spray.stop_id() != 0});
+  if (message.ground_truth()) {
+    add_true_sprays(message, axes, record);
+  } else {
+    add_driver_sprays(message, axes, record);
   }
   add_paths(message, axes, record);
   return record;
+}
+
+Result<ledger::Ledger> account(const furrow_msgs::msg::RunRecord& message,
+                               const ledger::RunRecord& record, const std::string& name) {
+  field::FieldModel field = from_msg(message.field());
+  if (message.ground_truth()) return ledger::account(field, record);
+  if (field.name.empty()) field.name = name;
+  field.source = "tracks of the robot, no ground truth";
+  return ledger::account_tracks(field, record);
 }
 
 }  // namespace furrow::components

@@ -40,9 +40,11 @@ struct Parameters {
 class Scorer final : public graph::Component {
  public:
   static void describe(graph::Description& d) {
-    d.doc("Gathers plants, decisions, sprays and paths; publishes the record at the end.")
+    d.doc("Collects plants, decisions, sprays and paths; publishes the record at the end.")
         .parameters<Parameters>()
+        .shared_parameters(GeoreferenceParameters::names())
         .input<topics::TrueField>(graph::Need::kOptional)
+        .input<topics::TrueOdometry>(graph::Need::kOptional)
         .input<topics::TrueSpray>(graph::Need::kOptional)
         .input<topics::RobotOdometry>()
         .input<topics::Tracks>()
@@ -61,18 +63,23 @@ class Scorer final : public graph::Component {
     for (const geometry::AxisModel& axis : tool_.axes) {
       record_.paths().emplace_back().axis(axis.name);
     }
-    context.input<topics::TrueField>([this](const auto& field) { record_.field(*field); });
+    context.input<topics::TrueField>([this](const auto& field) {
+      record_.field(*field);
+      field_known_ = true;
+    });
+    // Without it no landing of a spray is simulated.
+    context.input<topics::TrueOdometry>([this](const auto&) { landing_known_ = true; });
     context.input<topics::TrueSpray>([this](const auto& spray) {
       if (bounded(record_.sprays())) record_.sprays().push_back(*spray);
     });
     context.input<topics::RobotOdometry>(
         [this](const auto& message) { drive(from_msg(*message)); });
     context.input<topics::Tracks>([this](const auto& message) {
-      for (const auto& track : message->tracks()) tracks_[track.id()] = track;
+      for (const auto& track : message->tracks()) take(track);
     });
     context.input<topics::Plan>([this](const auto& plan) {
       for (const auto& decision : plan->decisions()) {
-        if (known(decision.decision())) decisions_[decision.track_id()] = decision;
+        if (known(decision.decision())) take(decision);
       }
     });
     context.input<topics::AxisEvent>([this](const auto& event) {
@@ -87,28 +94,66 @@ class Scorer final : public graph::Component {
   }
 
  private:
-  // Far above any run; a flood of messages must not fill the memory.
+  // Far above any run: bounds the memory.
   static constexpr std::size_t kMaxEntries = 2'000'000;
 
   /// Whether an enumeration holds one of its constants.
   template <class Enumeration>
   bool known(const Enumeration& message) {
     const auto value = msgs::from_msg(message);
-    if (value.ok()) return true;
-    context_.warn("unknown_values", value.error().message + "; it is not in the ledger");
-    return false;
+    if (!value.ok()) {
+      context_.warn("unknown_values", value.error().message + "; it is not in the ledger");
+    }
+    return value.ok();
   }
 
   template <class T>
   bool bounded(const std::vector<T>& list) {
     if (list.size() < kMaxEntries) return true;
     context_.warn("entries_beyond_the_limit",
-                  "more than 2000000 entries of one kind; further ones are not in the ledger");
+                  "the record is full; later sprays, events and paths are not in the ledger");
     return false;
   }
 
+  void take(const furrow_msgs::msg::Track& track) {
+    if (in_field(track.position().x(), track.position().y())) {
+      tracks_[track.id()] = track;
+    } else {
+      context_.warn("bad_tracks", "position of track " + std::to_string(track.id()) +
+                                      " is not finite or outside of the field; the ledger has "
+                                      "no line for it");
+    }
+  }
+
+  /// Keeps the first of equal decisions in a row, which has the time of the change, and the last.
+  void take(const furrow_msgs::msg::Decision& decision) {
+    auto& history = decisions_[decision.track_id()];
+    const auto same = [&](const furrow_msgs::msg::Decision& other) {
+      return other.decision() == decision.decision() && other.axis() == decision.axis();
+    };
+    const std::size_t size = history.size();
+    if (size >= 2 && same(history[size - 1]) && same(history[size - 2])) {
+      history.back() = decision;
+    } else if (decision_count_ < kMaxEntries) {
+      history.push_back(decision);
+      ++decision_count_;
+    } else {
+      context_.warn("entries_beyond_the_limit",
+                    "the record has too many decisions; the newest "
+                    "are not in the ledger");
+    }
+  }
+
   void drive(const BaseOdometry& base) {
-    if (!first_) first_ = base;
+    if (!first_) {
+      if (!in_field(base.X_FB.x_m, base.X_FB.y_m)) {
+        context_.request_stop(context_.name() + ": " +
+                              outside_field("localization/odometry", base.X_FB) +
+                              " Publish it relative to a place in the field");
+        return;
+      }
+      first_ = base;
+    }
     if (const Status added = poses_.add(base); !added.ok()) {
       context_.warn("bad_odometry", added.error().message + "; it was not used");
     }
@@ -133,13 +178,16 @@ class Scorer final : public graph::Component {
 
   void finish(const furrow_msgs::msg::RunStatus& status) {
     record_.header(status.header());
+    record_.ground_truth(field_known_ && landing_known_);
     record_.distance_m(status.distance_m());
     const Time end = graph::from_msg(status.header().stamp());
     const double duration_s = first_ ? (end - first_->stamp).to_seconds() : 0.0;
     record_.duration_s(duration_s);
     record_.mean_speed_mps(duration_s > 0.0 ? status.distance_m() / duration_s : 0.0);
     for (const auto& [id, track] : tracks_) record_.tracks().push_back(track);
-    for (const auto& [id, decision] : decisions_) record_.decisions().push_back(decision);
+    for (const auto& [id, history] : decisions_) {
+      for (const auto& decision : history) record_.decisions().push_back(decision);
+    }
     for (const auto& [axis, state] : states_) record_.axes().push_back(state);
     record_.georeferenced(true);
     record_.origin_latitude_deg(parameters_.georeference.origin_latitude_deg);
@@ -155,7 +203,10 @@ class Scorer final : public graph::Component {
   graph::Output<topics::RunRecord> out_;
   furrow_msgs::msg::RunRecord record_;
   std::map<std::int64_t, furrow_msgs::msg::Track> tracks_;
-  std::map<std::int64_t, furrow_msgs::msg::Decision> decisions_;
+  std::map<std::int64_t, std::vector<furrow_msgs::msg::Decision>> decisions_;  ///< by track
+  std::size_t decision_count_ = 0;
+  bool field_known_ = false;    ///< from the ground truth
+  bool landing_known_ = false;  ///< of sprays, from the ground truth
   std::map<std::string, furrow_msgs::msg::AxisState> states_;
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::optional<BaseOdometry> first_;

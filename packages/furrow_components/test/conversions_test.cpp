@@ -11,7 +11,7 @@
 namespace furrow::components {
 namespace {
 
-TEST(Conversions, OdometryRoundTrip) {
+TEST(Conversions, OdometryIsTheSameThereAndBack) {
   const BaseOdometry odometry{Time::from_seconds(3.25), {1.0, -2.0, 2.5}, 0.5, -0.1};
   const BaseOdometry copy = from_msg(to_msg(odometry, kFieldFrame));
   EXPECT_EQ(copy.stamp, odometry.stamp);
@@ -22,7 +22,7 @@ TEST(Conversions, OdometryRoundTrip) {
   EXPECT_EQ(copy.yaw_rate_radps, -0.1);
 }
 
-TEST(Conversions, FieldRoundTrip) {
+TEST(Conversions, FieldIsTheSameThereAndBack) {
   field::FieldModel field{.name = "f", .source = "made by hand", .length_m = 3, .width_m = 1};
   field.row_y_m = {0.25};
   field.plants.push_back({.id = 4,
@@ -60,7 +60,7 @@ TEST(Conversions, DepthInMillimetresIsConverted) {
   EXPECT_FLOAT_EQ(depth_m->at<float>(1, 1), 1.25F);
 }
 
-TEST(Conversions, BadImagesAreErrors) {
+TEST(Conversions, InvalidImagesAreErrors) {
   auto message = to_msg(cv::Mat(4, 4, CV_8UC3, cv::Scalar(0)), Time(), "c");
   const auto fails = [&] { return !bgr_of(message).ok(); };
   auto good = message;
@@ -79,7 +79,7 @@ TEST(Conversions, BadImagesAreErrors) {
   EXPECT_FALSE(depth_m_of(good).ok());
 }
 
-TEST(Conversions, MasksAsRuns) {
+TEST(Conversions, MasksBecomeRunsAndBack) {
   cv::Mat mask(2, 3, CV_8UC1, cv::Scalar(0));
   mask.at<std::uint8_t>(0, 1) = 255;
   mask.at<std::uint8_t>(0, 2) = 255;
@@ -140,7 +140,7 @@ TEST(PoseBuffer, ContinuesAfterAGap) {
   for (int i = 1; i < PoseBuffer::kAgreeing; ++i) {
     EXPECT_FALSE(buffer.add({Time::from_seconds(60.0 + 0.02 * i), {}, 0, 0}).ok());
   }
-  // Another wrong stamp begins the count anew.
+  // Another wrong stamp restarts the count.
   EXPECT_FALSE(buffer.add({Time::from_seconds(1e6), {}, 0, 0}).ok());
   for (int i = 1; i < PoseBuffer::kAgreeing; ++i) {
     EXPECT_FALSE(buffer.add({Time::from_seconds(61.0 + 0.02 * i), {}, 0, 0}).ok());

@@ -33,7 +33,7 @@ TEST(Georeference, ConvertsAPositionThereAndBack) {
   EXPECT_TRUE(back.covariance->isApprox(*there.covariance, 1e-9));
 }
 
-TEST(Georeference, TurnsTheCovarianceToEastAndNorth) {
+TEST(Georeference, RotatesTheCovarianceToEastAndNorth) {
   GeoreferenceParameters parameters;
   parameters.row_angle_deg = 90.0;  // the field's x points north
   const auto fix = Georeference(parameters).to_msg(position(FixQuality::kRtkFixed, 0.01, 0.03));
@@ -54,13 +54,13 @@ TEST(Georeference, KeepsTheQuality) {
   }
 }
 
-TEST(Georeference, LeavesAnUnknownCovarianceUnknown) {
+TEST(Georeference, KeepsAnUnknownCovarianceUnknown) {
   const Georeference georeference({});
   const auto fix = georeference.to_msg(position(FixQuality::kRtkFixed, 0.0, 0.0));
   EXPECT_FALSE(georeference.from_msg(fix).covariance.has_value());
 }
 
-TEST(Georeference, RefusesAnOriginThatIsNotOnTheEarth) {
+TEST(Georeference, RejectsAnOriginThatIsNotOnTheEarth) {
   GeoreferenceParameters parameters;
   parameters.origin_latitude_deg = NAN;
   EXPECT_THROW((void)Georeference(parameters), ConfigError);

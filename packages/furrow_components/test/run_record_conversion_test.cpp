@@ -16,7 +16,14 @@ using ledger::Reason;
 using msgs::AxisEventKind;
 using msgs::DecisionKind;
 
-const std::vector<std::string> kAxes = {"axis_1", "axis_2"};
+std::vector<geometry::AxisModel> two_axes() {
+  std::vector<geometry::AxisModel> axes(2);
+  axes[0].name = "axis_1";
+  axes[1].name = "axis_2";
+  axes[1].nozzle.footprint_radius_m = 0.03;
+  return axes;
+}
+const std::vector<geometry::AxisModel> kAxes = two_axes();
 
 furrow_msgs::msg::RunRecord record_of(DecisionKind decision) {
   furrow_msgs::msg::RunRecord record;
@@ -79,6 +86,78 @@ TEST(RunRecordConversion, AnOpenedValveOverridesWhatThePlannerSaysAfterwards) {
   EXPECT_EQ(record->decisions[1].action, Action::kTreat);
   EXPECT_EQ(record->decisions[1].reason, Reason::kNone);
   EXPECT_EQ(record->decisions[1].axis, 1);
+}
+
+TEST(RunRecordConversion, WithoutGroundTruthSpraysAreThoseOfTheDrivers) {
+  furrow_msgs::msg::RunRecord message;
+  for (const auto kind : {AxisEventKind::kSprayed, AxisEventKind::kDryRun}) {
+    auto& event = message.events().emplace_back();
+    event.event(msgs::to_msg(kind));
+    event.axis("axis_2");
+    event.track_ids({4});
+    event.header().stamp(graph::to_msg(Time::from_seconds(5.0)));
+    event.landing().x(1.25);
+    event.aim().x(1.2);
+  }
+  message.sprays().emplace_back();  // without the true odometry, not all of them
+  const auto record = from_msg(message, kAxes);
+  ASSERT_TRUE(record.ok());
+  ASSERT_EQ(record->sprays.size(), 1u);
+  const ledger::Spray& spray = record->sprays[0];
+  EXPECT_EQ(spray.axis, 1);
+  EXPECT_EQ(spray.p_F_m.x(), 1.25);
+  EXPECT_EQ(spray.aim_F_m.x(), 1.2);
+  EXPECT_EQ(spray.radius_m, 0.03);
+  EXPECT_EQ(spray.time, Time::from_seconds(5.0));
+  EXPECT_EQ(spray.track_ids, std::vector<std::int64_t>{4});
+}
+
+TEST(RunRecordConversion, WithoutGroundTruthEveryConfirmedTrackHasALine) {
+  furrow_msgs::msg::RunRecord message;
+  for (const std::int64_t id : {1, 2, 3}) {
+    auto& track = message.tracks().emplace_back();
+    track.id(id);
+    track.confirmed(id != 3);
+    track.position().x(0.5 * static_cast<double>(id));
+  }
+  auto& event = message.events().emplace_back();
+  event.event(msgs::to_msg(AxisEventKind::kSprayed));
+  event.axis("axis_1");
+  event.track_ids({2});
+  event.landing().x(1.004);
+  event.aim().x(1.0);
+  const auto record = from_msg(message, kAxes);
+  ASSERT_TRUE(record.ok());
+  const auto ledger = account(message, *record, "day_3");
+  ASSERT_TRUE(ledger.ok()) << ledger.error().message;
+  EXPECT_FALSE(ledger->summary.against_truth);
+  EXPECT_EQ(ledger->summary.field, "day_3");
+  EXPECT_EQ(ledger->summary.sprays, 1);
+  ASSERT_EQ(ledger->rows.size(), 2u);
+  EXPECT_EQ(ledger->rows[0].outcome, ledger::Outcome::kMissed);
+  EXPECT_EQ(ledger->rows[1].outcome, ledger::Outcome::kAccurate);
+  EXPECT_EQ(ledger->rows[1].track_id, 2);
+}
+
+TEST(RunRecordConversion, WithGroundTruthPlantsAndSpraysAreItsOwn) {
+  furrow_msgs::msg::RunRecord message;
+  message.ground_truth(true);
+  message.field().name("f");
+  message.field().plants().emplace_back().id(9);
+  auto& spray = message.sprays().emplace_back();
+  spray.axis("axis_1");
+  spray.radius_m(0.025);
+  message.events().emplace_back().event(msgs::to_msg(AxisEventKind::kSprayed));
+  message.tracks().emplace_back().confirmed(true);
+  const auto record = from_msg(message, kAxes);
+  ASSERT_TRUE(record.ok());
+  ASSERT_EQ(record->sprays.size(), 1u);
+  EXPECT_EQ(record->sprays[0].radius_m, 0.025);
+  const auto ledger = account(message, *record, "");
+  ASSERT_TRUE(ledger.ok());
+  EXPECT_TRUE(ledger->summary.against_truth);
+  ASSERT_EQ(ledger->rows.size(), 1u);
+  EXPECT_EQ(ledger->rows[0].plant_id, 9);
 }
 
 TEST(RunRecordConversion, UnknownValueIsAnError) {

@@ -75,7 +75,7 @@ TrialStretch run_stretch(const TrialExperiment& experiment, const TrialRegion& r
   }
   const auto field = components::from_msg(observer.record()->field());
   ledger::RunRecord record =
-      value_or_throw(components::from_msg(*observer.record(), prepared.axes));
+      value_or_throw(components::from_msg(*observer.record(), prepared.tool.axes));
   record.info.simulated = true;
   record.info.seed = static_cast<std::int64_t>(seed);
   record.info.version = version();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace furrow::graph {
@@ -23,6 +24,57 @@ void check_component_parameters(const ComponentSpec& component, const GraphSpec&
                       component.class_name + "')");
   }
 }
+
+bool same_value(const ParameterValue& a, const ParameterValue& b) {
+  const auto number = [](const ParameterValue& value) -> std::optional<double> {
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+      return static_cast<double>(*integer);
+    }
+    if (const auto* real = std::get_if<double>(&value)) return *real;
+    return std::nullopt;
+  };
+  return number(a) && number(b) ? *number(a) == *number(b) : a == b;
+}
+
+/// Holds the values of shared parameters against each other.
+class SharedParameters {
+ public:
+  void add(const ComponentSpec& component, const GraphSpec& graph, const Description& description) {
+    const auto given = parameters_of(component, graph, description);
+    for (const DeclaredParameter& declared : description.declared_parameters_list()) {
+      const auto& shared = description.shared_parameter_names();
+      if (std::ranges::find(shared, declared.info.name) == shared.end()) continue;
+      const auto own = std::ranges::find(given, declared.info.name, &GivenParameter::name);
+      const bool set = own != given.end();
+      const Use use{component.name, set ? own->value : declared.default_value,
+                    set ? own->where : component.where, set};
+      const auto [other, first] = uses_.try_emplace(declared.info.name, use);
+      if (!first && !same_value(other->second.value, use.value)) {
+        contradict(declared.info.name, other->second, use);
+      }
+    }
+  }
+
+ private:
+  struct Use {
+    std::string component;
+    ParameterValue value;
+    SourceLocation where;
+    bool set = false;  ///< else the default
+  };
+
+  [[noreturn]] static void contradict(const std::string& name, const Use& a, const Use& b) {
+    // The error points at a value that is set.
+    const Use& at = b.set ? b : a;
+    const Use& other = b.set ? a : b;
+    throw ConfigError(at.where, at.component + "." + name,
+                      to_text(at.value) + " contradicts " + other.component + "." + name +
+                          ", which is " + to_text(other.value) + (other.set ? "" : " by default") +
+                          "; set common." + name + " instead");
+  }
+
+  std::map<std::string, Use> uses_;
+};
 
 void check_remaps(const ComponentSpec& component, const Description& description) {
   for (const auto& [port, topic] : component.remaps) {
@@ -145,6 +197,7 @@ std::vector<GivenParameter> parameters_of(const ComponentSpec& component, const 
 
 std::vector<Connection> check_graph(const GraphSpec& graph, Registry& registry) {
   Wiring wiring;
+  SharedParameters shared;
   std::set<std::string> names;
   std::set<std::string> known_common;
   for (const ComponentSpec& component : graph.components) {
@@ -156,6 +209,7 @@ std::vector<Connection> check_graph(const GraphSpec& graph, Registry& registry) 
         component.class_where.file.empty() ? component.where : component.class_where;
     const ComponentClass& type = registry.find(component.class_name, class_where);
     check_component_parameters(component, graph, type.description);
+    shared.add(component, graph, type.description);
     check_remaps(component, type.description);
     for (const GivenParameter& parameter : graph.common) {
       if (declares(type.description, parameter.name)) known_common.insert(parameter.name);

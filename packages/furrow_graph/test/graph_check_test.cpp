@@ -79,6 +79,50 @@ TEST(GraphCheck, CommonParametersGoToComponentsThatDeclareThem) {
   EXPECT_EQ(error(graph), "graph.yaml:2: common.rate_kz: no component declares this parameter");
 }
 
+/// Declares one parameter that all components must agree on.
+struct OriginParameters {
+  double latitude_deg = 50.0;
+  void visit(ParameterVisitor& v) { v.visit({.name = "latitude_deg"}, latitude_deg); }
+};
+
+std::string error_with_origins(const GraphSpec& graph) {
+  Registry registry;
+  for (const char* name : {"localization", "scorer"}) {
+    ComponentClass type{.name = name};
+    type.description.parameters<OriginParameters>().shared_parameters({"latitude_deg"});
+    type.make = [](Context&) { return std::make_unique<Component>(); };
+    registry.add(std::move(type));
+  }
+  return test::error_of("", [&] { check_graph(graph, registry); });
+}
+
+TEST(GraphCheck, SharedParameterMustBeTheSameInAllComponents) {
+  GraphSpec graph;
+  graph.components = {spec("localization", "localization"), spec("scorer", "scorer")};
+  EXPECT_EQ(error_with_origins(graph), "");
+  graph.components[0].parameters = {{"latitude_deg", 48.0, {"graph.yaml", 7}}};
+  EXPECT_EQ(error_with_origins(graph),
+            "graph.yaml:7: localization.latitude_deg: 48 contradicts scorer.latitude_deg, which is "
+            "50 by default; set common.latitude_deg instead");
+  graph.components[1].parameters = {{"latitude_deg", 49.0, {"graph.yaml", 9}}};
+  EXPECT_EQ(error_with_origins(graph),
+            "graph.yaml:9: scorer.latitude_deg: 49 contradicts localization.latitude_deg, which is "
+            "48; set common.latitude_deg instead");
+  graph.components[1].parameters = {{"latitude_deg", std::int64_t{48}, {"graph.yaml", 9}}};
+  EXPECT_EQ(error_with_origins(graph), "");
+}
+
+TEST(GraphCheck, CommonValueOfASharedParameterContradictsNothing) {
+  GraphSpec graph;
+  graph.components = {spec("localization", "localization"), spec("scorer", "scorer")};
+  graph.common = {{"latitude_deg", 48.0, {"graph.yaml", 2}}};
+  EXPECT_EQ(error_with_origins(graph), "");
+  graph.components[1].parameters = {{"latitude_deg", 49.0, {"graph.yaml", 9}}};
+  EXPECT_EQ(error_with_origins(graph),
+            "graph.yaml:9: scorer.latitude_deg: 49 contradicts localization.latitude_deg, which is "
+            "48; set common.latitude_deg instead");
+}
+
 TEST(GraphCheck, AnIncompatibleQosNamesThePolicy) {
   // The reader of a latched topic would never get the messages of an earlier writer.
   Registry registry = test::standard_registry();

@@ -18,7 +18,8 @@ PreparedGraph prepare_graph(const std::string& graph, const std::vector<std::str
   graph::apply_settings(prepared.spec, common);
   const std::string tool = graph::common_text(prepared.spec, "tool_file");
   if (!tool.empty()) {
-    for (const geometry::AxisModel& axis : geometry::load_tool_model(tool).axes) {
+    prepared.tool = geometry::load_tool_model(tool);
+    for (const geometry::AxisModel& axis : prepared.tool.axes) {
       prepared.axes.push_back(axis.name);
     }
   }

@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "furrow_components/application_record.hpp"
-#include "furrow_components/field_conversion.hpp"
 #include "furrow_components/run_record_conversion.hpp"
 #include "furrow_core/version.hpp"
-#include "furrow_geometry/tool_model.hpp"
 #include "furrow_launch/diagnostics_table.hpp"
 #include "furrow_launch/run_summary.hpp"
 #include "furrow_msgs/furrow_msgs.h"
@@ -18,9 +16,11 @@
 namespace furrow::launch {
 namespace {
 
-geometry::ToolModel tool_of(const PreparedGraph& prepared) {
-  const std::string file = graph::common_text(prepared.spec, "tool_file");
-  return file.empty() ? geometry::ToolModel() : geometry::load_tool_model(file);
+/// The name of a field without ground truth.
+std::string field_name(const RunOptions& options) {
+  return options.recordings.empty()
+             ? options.graph
+             : std::filesystem::path(options.recordings.front()).stem().string();
 }
 
 /// What every nozzle passed over, along the row. A run that was interrupted leaves the weeds ahead
@@ -39,7 +39,7 @@ std::pair<double, double> passed_x_m(const std::vector<ledger::RouteView>& route
 
 ledger::RunInfo run_info(const RunOutcome& outcome, const PreparedGraph& prepared,
                          const RunOptions& options, ledger::RunInfo info) {
-  info.simulated = !outcome.record->field().source().empty();
+  info.simulated = outcome.record->ground_truth();
   info.interrupted = outcome.interrupted;
   info.seed = options.seed;
   info.version = version();
@@ -59,7 +59,7 @@ std::vector<std::string_view> report_files() {
 Result<RunReport> write_run_report(const RunOutcome& outcome, const PreparedGraph& prepared,
                                    const RunOptions& options, const std::filesystem::path& folder) {
   const furrow_msgs::msg::RunRecord& message = *outcome.record;
-  const geometry::ToolModel tool = tool_of(prepared);
+  const geometry::ToolModel& tool = prepared.tool;
   const auto applications = components::applications_of(message, tool);
   // First: what was sprayed is known, whatever the account of the plants comes to.
   if (Status written = components::write_as_applied(folder, message, applications); !written) {
@@ -68,7 +68,7 @@ Result<RunReport> write_run_report(const RunOutcome& outcome, const PreparedGrap
   RunReport report;
   report.dropped_messages = dropped_messages(outcome.components);
   report.unhealthy = not_well(outcome.components);
-  auto converted = components::from_msg(message, prepared.axes);
+  auto converted = components::from_msg(message, tool.axes);
   if (!converted.ok()) {
     return Error{converted.error().code, "run/record: " + converted.error().message};
   }
@@ -83,7 +83,7 @@ Result<RunReport> write_run_report(const RunOutcome& outcome, const PreparedGrap
     std::ranges::move(not_well(outcome.diagnostics, outcome.process),
                       std::back_inserter(report.unhealthy));
   }
-  const auto ledger = ledger::account(components::from_msg(message.field()), record);
+  const auto ledger = components::account(message, record, field_name(options));
   if (!ledger.ok()) {
     return Error{ledger.error().code, "the run cannot be accounted for: " + ledger.error().message};
   }

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <unordered_map>
 
@@ -84,14 +86,18 @@ class Accountant {
  private:
   void index_decisions() {
     decision_of_track_.assign(tracks_.size(), kNoIndex);
-    std::unordered_map<std::int64_t, std::size_t> latest;
-    for (std::size_t d = 0; d < decisions_.size(); ++d) latest[decisions_[d].track_id] = d;
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
-      if (const auto found = latest.find(tracks_[t].id); found != latest.end()) {
-        decision_of_track_[t] = found->second;
+      if (const auto all = decisions_of(tracks_[t].id); !all.empty()) {
+        decision_of_track_[t] = static_cast<std::size_t>(&all.back() - decisions_.data());
       }
       track_of_id_.emplace(tracks_[t].id, t);
     }
+  }
+
+  /// All decisions about a track, in the order of time.
+  [[nodiscard]] std::span<const Decision> decisions_of(std::int64_t track_id) const {
+    const auto found = std::ranges::equal_range(decisions_, track_id, {}, &Decision::track_id);
+    return {found.begin(), found.end()};
   }
 
   static void keep_nearest(std::size_t& best, double& best_m, std::size_t spray,
@@ -150,6 +156,34 @@ class Accountant {
     return latest;
   }
 
+  /// The latest decision about a track at or before a time; with `action`, the latest such.
+  [[nodiscard]] const Decision* decision_before(std::int64_t track_id, Time time,
+                                                std::optional<Action> action) const {
+    const Decision* latest = nullptr;
+    for (const Decision& decision : decisions_of(track_id)) {
+      if (decision.time > time) break;
+      if (!action || decision.action == *action) latest = &decision;
+    }
+    return latest;
+  }
+
+  /// The decision behind a spray that reached a plant or was aimed at it. Of a track that the spray
+  /// names it is the last one to treat. Later decisions did not lead to the outcome, such as that
+  /// the robot has passed the track.
+  [[nodiscard]] const Decision* decision_behind(const Spray& spray, std::size_t plant) const {
+    const Decision* latest = nullptr;
+    for (const std::int64_t id : spray.track_ids) {
+      const auto track = track_of_id_.find(id);
+      if (track == track_of_id_.end()) continue;
+      if (association_.plant_of_track[track->second] != plant) continue;
+      const Decision* treat = decision_before(id, spray.time, Action::kTreat);
+      if (treat != nullptr && (latest == nullptr || treat->time > latest->time)) latest = treat;
+    }
+    if (latest != nullptr) return latest;
+    const std::size_t own = association_.track_of_plant[plant];
+    return own == kNoIndex ? nullptr : decision_before(tracks_[own].id, spray.time, std::nullopt);
+  }
+
   [[nodiscard]] Reason cause(std::size_t plant, const Decision* decision) const {
     const Eigen::Vector2d& p_F = plants_[plant].p_F_m;
     const auto beyond = [](const std::optional<std::pair<double, double>>& span, double v) {
@@ -176,12 +210,13 @@ class Accountant {
                   .radius_m = plant.radius_m,
                   .area_mm2 = plant.area_mm2};
     const Decision* decision = decision_on(i);
-    if (decision != nullptr) {
-      row.action = decision->action;
-      if (decision->action == Action::kTreat) row.axis = decision->axis;
-    }
     const Sprayed& sprayed = sprayed_[i];
     const bool landed = sprayed.landed != kNoIndex;
+    const std::size_t by = landed ? sprayed.landed : sprayed.aimed;
+    if (const Decision* led = by == kNoIndex ? decision : decision_behind(sprays_[by], i)) {
+      row.action = led->action;
+      if (led->action == Action::kTreat) row.axis = led->axis;
+    }
     if (plant.kind == PlantKind::kCrop) {
       row.outcome = landed ? Outcome::kHit : Outcome::kSpared;
     } else if (landed) {
@@ -190,8 +225,8 @@ class Accountant {
     } else {
       row.reason = cause(i, decision);
     }
-    if (landed || sprayed.aimed != kNoIndex) {
-      const Spray& spray = sprays_[landed ? sprayed.landed : sprayed.aimed];
+    if (by != kNoIndex) {
+      const Spray& spray = sprays_[by];
       row.axis = spray.axis;
       row.sprayed = spray.time;
       row.spray_distance_m = landed ? sprayed.landed_m : sprayed.aimed_m;

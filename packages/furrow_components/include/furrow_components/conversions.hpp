@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "furrow_core/time.hpp"
 #include "furrow_geometry/camera.hpp"
@@ -13,6 +14,13 @@ namespace furrow::components {
 inline constexpr char kFieldFrame[] = "field";
 inline constexpr char kBaseFrame[] = "base_link";
 inline constexpr char kCameraFrame[] = "camera_optical";
+
+/// No pose or plant is farther than this from the origin of the field frame, along x or y.
+inline constexpr double kMaxField_m = 10'000.0;
+/// False also where the position is not finite.
+[[nodiscard]] bool in_field(double x_m, double y_m);
+/// The message for odometry on `topic` that starts outside of the field frame.
+[[nodiscard]] std::string outside_field(std::string_view topic, const geometry::Pose2& X_FB);
 
 [[nodiscard]] std_msgs::msg::Header header(Time stamp, const std::string& frame);
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "furrow_core/parameters.hpp"
 #include "furrow_geometry/geodetic.hpp"
 #include "furrow_localization/measurement.hpp"
@@ -15,6 +18,8 @@ struct GeoreferenceParameters {
   double row_angle_deg = 0.0;
 
   void visit(ParameterVisitor& v);
+  /// For Description::shared_parameters(): the field frame has one place on the earth.
+  [[nodiscard]] static std::vector<std::string> names();
 };
 
 /// Converts between NavSatFix and positions in the field frame.

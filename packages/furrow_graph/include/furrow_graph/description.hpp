@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "furrow_core/parameters.hpp"
@@ -29,6 +30,11 @@ class Description {
     parameters_ = declared_parameters<Parameters>();
     return *this;
   }
+  /// Parameters that must have the same value in all components of a graph that declare them.
+  Description& shared_parameters(std::vector<std::string> names) {
+    shared_ = std::move(names);
+    return *this;
+  }
   template <class T>
   Description& input(Need need = Need::kRequired) {
     inputs_.push_back({&T::topic(), need});
@@ -44,12 +50,14 @@ class Description {
   [[nodiscard]] const std::vector<DeclaredParameter>& declared_parameters_list() const {
     return parameters_;
   }
+  [[nodiscard]] const std::vector<std::string>& shared_parameter_names() const { return shared_; }
   [[nodiscard]] const std::vector<PortInfo>& inputs() const { return inputs_; }
   [[nodiscard]] const std::vector<PortInfo>& outputs() const { return outputs_; }
 
  private:
   std::string text_;
   std::vector<DeclaredParameter> parameters_;
+  std::vector<std::string> shared_;
   std::vector<PortInfo> inputs_;
   std::vector<PortInfo> outputs_;
 };

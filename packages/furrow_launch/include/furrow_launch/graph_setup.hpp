@@ -12,6 +12,7 @@ namespace furrow::launch {
 /// with the settings.
 struct PreparedGraph {
   graph::GraphSpec spec;
+  geometry::ToolModel tool;       ///< empty where the graph has none
   std::vector<std::string> axes;  ///< names, in the order of the tool model
 };
 

@@ -43,8 +43,9 @@ struct LedgerRow {
   double area_mm2 = 0.0;
   Outcome outcome = Outcome::kMissed;
   Reason reason = Reason::kNone;  ///< of a missed weed; kNone otherwise
-  Action action = Action::kNone;  ///< the last decision on its track
-  int axis = -1;                  ///< that sprayed it or was to; -1: none
+  /// The decision that led to the outcome: the one behind the spray, else the last on its track.
+  Action action = Action::kNone;
+  int axis = -1;  ///< that sprayed it or was to; -1: none
   /// The spray that treated or hit it, or else the nearest of those aimed at it.
   std::optional<Time> sprayed;
   std::optional<double> spray_distance_m;  ///< of that spray's centre to the stem
@@ -126,9 +127,9 @@ struct Ledger {
 [[nodiscard]] Result<Ledger> account(const field::FieldModel& truth, const RunRecord& record,
                                      const AccountParameters& parameters = {});
 
-/// The account of a run without ground truth: every confirmed track stands for a plant
-/// where the tracker saw it. Outcomes are then the robot's own estimate, and summary.against_truth
-/// is false. `strip` gives name, source, size and rows; its plants are not used.
+/// The account of a run without ground truth: every confirmed track stands for a plant at its
+/// position. Outcomes are then the robot's own estimate, and summary.against_truth is false.
+/// `strip` gives name, source, size and rows; its plants are not used.
 [[nodiscard]] Result<Ledger> account_tracks(const field::FieldModel& strip, const RunRecord& record,
                                             const AccountParameters& parameters = {});
 

@@ -67,8 +67,9 @@ enum class Action : std::uint8_t {
 };
 [[nodiscard]] std::string_view to_string(Action action);
 
-/// What planner or driver said of a track. The latest of a track counts; a driver that could not
-/// fire says so by a kLeave with its reason (kUnreachable, kStale, kFault, kProtectedCrop).
+/// A decision of planner or driver about a track. Give every change with its time: the latest is
+/// the reason of a missed weed, the one before a spray led to that spray. A driver that skipped a
+/// stop adds a kLeave with its reason (kUnreachable, kStale, kFault, kProtectedCrop).
 struct Decision {
   Time time;
   std::int64_t track_id = 0;
