@@ -75,13 +75,15 @@ std::vector<ledger::ReportTable> health_tables(std::span<const graph::ComponentS
 }
 
 std::string outcome_text(const ledger::Summary& s, std::uint64_t dropped) {
+  const std::string how = s.against_truth ? "" : ", computed";
   std::vector<std::vector<std::string>> rows = {
-      {"weeds", std::to_string(s.weeds_total), ""},
-      {"  treated accurately", std::to_string(s.treated_accurate),
+      {"weeds" + std::string(s.against_truth ? "" : " (tracks)"), std::to_string(s.weeds_total),
+       ""},
+      {"  treated accurately" + how, std::to_string(s.treated_accurate),
        percent(s.treated_accurate, s.weeds_total)},
-      {"  treated partially", std::to_string(s.treated_partial),
+      {"  treated partially" + how, std::to_string(s.treated_partial),
        percent(s.treated_partial, s.weeds_total)},
-      {"  missed", std::to_string(s.missed), percent(s.missed, s.weeds_total)},
+      {"  missed" + how, std::to_string(s.missed), percent(s.missed, s.weeds_total)},
   };
   for (std::size_t i = 0; i < ledger::kReasonCount; ++i) {
     if (s.missed_by_reason[i] == 0) continue;
@@ -89,11 +91,15 @@ std::string outcome_text(const ledger::Summary& s, std::uint64_t dropped) {
                     std::to_string(s.missed_by_reason[i]),
                     percent(s.missed_by_reason[i], s.weeds_total)});
   }
-  rows.push_back({"crops hit", std::to_string(s.crops_hit) + " of " + std::to_string(s.crops_total),
+  rows.push_back({"crops hit" + how,
+                  std::to_string(s.crops_hit) + " of " + std::to_string(s.crops_total),
                   percent(s.crops_hit, s.crops_total)});
   rows.push_back({"sprays", std::to_string(s.sprays), ""});
-  rows.push_back({"placement error p50", millimetres(s.placement_error_p50_mm), ""});
-  rows.push_back({"placement error p95", millimetres(s.placement_error_p95_mm), ""});
+  const auto placement = [&](const std::optional<double>& error_mm) {
+    return s.against_truth ? millimetres(error_mm) : "unknown";
+  };
+  rows.push_back({"placement error p50", placement(s.placement_error_p50_mm), ""});
+  rows.push_back({"placement error p95", placement(s.placement_error_p95_mm), ""});
   if (dropped > 0) rows.push_back({"messages dropped", std::to_string(dropped), ""});
   if (s.realtime_factor)
     rows.push_back({"speed of the run", fixed(*s.realtime_factor, 1) + " x real time", ""});

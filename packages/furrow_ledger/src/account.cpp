@@ -309,7 +309,14 @@ Result<Ledger> account_tracks(const field::FieldModel& strip, const RunRecord& r
     seen.plants.push_back(std::move(plant));
   }
   Result<Ledger> ledger = account(seen, record, parameters);
-  if (ledger) ledger->summary.against_truth = false;
+  if (!ledger) return ledger;
+  // How far a spray landed from a stem, only ground truth tells; the tracks are where it was aimed.
+  ledger->placement_errors_mm.clear();
+  Summary& summary = ledger->summary;
+  summary.against_truth = false;
+  summary.placement_error_p50_mm.reset();
+  summary.placement_error_p95_mm.reset();
+  summary.placement_error_deciles_mm.clear();
   return ledger;
 }
 

@@ -126,7 +126,7 @@ void draw_header(Markup& svg, const Layout& layout, const Summary& summary) {
   std::string line = summary.source;
   if (summary.simulated) line = "simulated run" + (line.empty() ? "" : " \xC2\xB7 " + line);
   if (summary.interrupted) line += (line.empty() ? "" : " \xC2\xB7 ") + std::string("interrupted");
-  if (!summary.against_truth) line += " \xC2\xB7 against the robot's own tracks";
+  if (!summary.against_truth) line += " \xC2\xB7 computed from the robot's own tracks";
   draw_text(svg, 0, 36, line, "start", palette::kMuted);
   const double right = kWidth_px - 12;
   draw_text(svg, right - 58, 18, "direction of travel", "end", palette::kMuted);

@@ -34,18 +34,23 @@ std::string radius_mm(double radius_m) {
 std::vector<Tile> headline(const Ledger& ledger) {
   const Summary& s = ledger.summary;
   const std::int64_t treated = s.treated_accurate + s.treated_partial;
+  const std::string how = s.against_truth ? "" : ", computed";
   return {
-      {"Weeds treated", share(treated, s.weeds_total),
+      {"Weeds treated" + how, share(treated, s.weeds_total),
        count(treated) + " of " + count(s.weeds_total), ""},
-      {"Treated accurately", share(s.treated_accurate, s.weeds_total),
+      {"Treated accurately" + how, share(s.treated_accurate, s.weeds_total),
        count(s.treated_accurate) + " within " + radius_mm(ledger.parameters.accurate_radius_m), ""},
       {"Loss by planning", percent(s.loss_planning_pct), "planning, machine and run",
        std::string(palette::kMissed)},
-      {"Loss by vision", percent(s.loss_vision_pct), "not seen, or mistaken",
+      {"Loss by vision", s.against_truth ? percent(s.loss_vision_pct) : "unknown",
+       s.against_truth ? "not seen, or mistaken" : "needs the true plants",
        std::string(palette::kMissedVision)},
-      {"Crops hit", count(s.crops_hit), "of " + count(s.crops_total), std::string(palette::kHit)},
-      {"Placement error", millimetres(s.placement_error_p50_mm),
-       "median; p95 " + millimetres(s.placement_error_p95_mm), ""},
+      {"Crops hit" + how, count(s.crops_hit), "of " + count(s.crops_total),
+       std::string(palette::kHit)},
+      {"Placement error", s.against_truth ? millimetres(s.placement_error_p50_mm) : "unknown",
+       s.against_truth ? "median; p95 " + millimetres(s.placement_error_p95_mm)
+                       : "needs the true plants",
+       ""},
   };
 }
 
@@ -140,11 +145,12 @@ Facts summary_facts(const Summary& s) {
 
 Facts provenance(const Summary& s, const RunInfo& info) {
   Facts facts = {
-      {"Robot and sensors", s.simulated ? "simulated" : "real"},
+      {"Robot and sensors", s.simulated ? "simulated" : "unknown: no ground truth with the data"},
       {"Field", s.field},
       {"Plants from", s.source},
       {"End of the run", s.interrupted ? "interrupted: it ended early" : "finished"},
-      {"Measured against", s.against_truth ? "the true plants" : "the robot's own tracks"},
+      {"Outcomes", s.against_truth ? "measured against the true plants"
+                                   : "computed from the robot's own tracks"},
       {"Seed", count(s.seed)},
       {"Graph", info.graph},
       {"Version", s.version}};
@@ -181,8 +187,8 @@ std::string report_html(const Ledger& ledger, const RunRecord& record) {
                              radius_mm(ledger.parameters.partial_radius_m) + ".";
   page.section("Losses and precision",
                (s.against_truth ? "Every missed weed has one cause. "
-                                : "Against what the robot itself saw: plants that it never saw do "
-                                  "not appear. ") +
+                                : "Computed from what the robot itself saw: plants that it never "
+                                  "saw do not appear. ") +
                    limits);
   std::vector<std::string> charts = {to_svg(reasons_chart(s)), to_svg(error_chart(ledger))};
   if (!s.sprays_by_axis.empty()) {

@@ -103,7 +103,7 @@ std::string to_json(const Summary& summary) {
   json["missed_by_reason"] = std::move(reasons);
   json["loss_pct"] = rounded(summary.loss_pct);
   json["loss_planning_pct"] = rounded(summary.loss_planning_pct);
-  json["loss_vision_pct"] = rounded(summary.loss_vision_pct);
+  json["loss_vision_pct"] = summary.against_truth ? Json(rounded(summary.loss_vision_pct)) : Json();
   json["crops_total"] = summary.crops_total;
   json["crops_hit"] = summary.crops_hit;
   json["sprays"] = summary.sprays;

@@ -293,6 +293,10 @@ TEST(Account, WithoutTruthTheConfirmedTracksStandForThePlants) {
   const auto ledger = account_tracks(field_of({plant(9, PlantKind::kWeed, 9.0, 0.0)}), record);
   ASSERT_TRUE(ledger.ok());
   EXPECT_FALSE(ledger->summary.against_truth);
+  EXPECT_FALSE(ledger->summary.placement_error_p50_mm.has_value());
+  EXPECT_TRUE(ledger->placement_errors_mm.empty());
+  const std::string json = to_json(ledger->summary);
+  EXPECT_NE(json.find(R"("loss_vision_pct": null)"), std::string::npos) << json;
   ASSERT_EQ(ledger->rows.size(), 3u);
   EXPECT_EQ(ledger->rows[0].outcome, Outcome::kAccurate);
   EXPECT_EQ(ledger->rows[1].reason, Reason::kUnreachable);

@@ -58,8 +58,10 @@ struct LedgerRow {
 struct Summary {
   std::string field;
   std::string source;
+  /// False: nothing says that it was; no ground truth came with the sensors' data.
   bool simulated = true;
-  /// False: measured against the robot's own tracks, for want of the true plants.
+  /// False: computed from the robot's own tracks, for want of the true plants. Placement errors and
+  /// the loss by vision are then unknown, and null in summary.json.
   bool against_truth = true;
   bool interrupted = false;  ///< see RunInfo
   std::int64_t weeds_total = 0;
@@ -128,7 +130,7 @@ struct Ledger {
                                      const AccountParameters& parameters = {});
 
 /// The account of a run without ground truth: every confirmed track stands for a plant at its
-/// position. Outcomes are then the robot's own estimate, and summary.against_truth is false.
+/// position. Outcomes are then computed, not measured, and summary.against_truth is false.
 /// `strip` gives name, source, size and rows; its plants are not used.
 [[nodiscard]] Result<Ledger> account_tracks(const field::FieldModel& strip, const RunRecord& record,
                                             const AccountParameters& parameters = {});
