@@ -75,9 +75,9 @@ int run(const RunCommandOptions& options) {
   const bool has_report = session.reports() && outcome.record != nullptr;
   const bool well = !outcome.result.failed && outcome.result.reason == "finished";
   if (well && !outcome.interrupted) {
-    log.write(log::Level::kInfo, "the run is finished");
+    log.write(outcome.result.end, log::Level::kInfo, "the run is finished");
   } else {
-    log.write(log::Level::kFatal,
+    log.write(outcome.result.end, log::Level::kFatal,
               "the run ended early: " +
                   (outcome.interrupted ? std::string("interrupted") : outcome.result.reason) +
                   (session.reports() && !has_report ? "; there is no report" : ""));

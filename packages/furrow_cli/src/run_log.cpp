@@ -55,4 +55,8 @@ void RunLog::write(log::Level level, std::string_view message) {
   log_.write_foreign(level, "furrow", message);
 }
 
+void RunLog::write(Time time, log::Level level, std::string_view message) {
+  log_.write(time, level, "furrow", message);
+}
+
 }  // namespace furrow::cli

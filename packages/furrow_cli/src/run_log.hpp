@@ -32,6 +32,8 @@ class RunLog {
   void run_started() { started_ = true; }
   /// A line of the command itself.
   void write(log::Level level, std::string_view message);
+  /// The same, at a time of the graph's clock.
+  void write(Time time, log::Level level, std::string_view message);
 
  private:
   std::filesystem::path file_;
