@@ -78,7 +78,7 @@ class SharedParameters {
 
 void check_remaps(const ComponentSpec& component, const Description& description) {
   for (const auto& [port, topic] : component.remaps) {
-    const auto has = [&](const std::vector<PortInfo>& ports) {
+    const auto has = [&port = port](const std::vector<PortInfo>& ports) {
       return std::ranges::any_of(ports, [&](const PortInfo& p) { return p.topic->name == port; });
     };
     if (!has(description.inputs()) && !has(description.outputs())) {
