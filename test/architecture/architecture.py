@@ -25,7 +25,7 @@ ALGORITHMS = {
 # What a package may depend on; a package that is not here has no place yet.
 BASE = {"furrow_cmake", "furrow_core"}
 GEOMETRIC = BASE | {"furrow_geometry"}
-SYSTEM = BASE | {"furrow_log", "furrow_msgs", "furrow_graph", "furrow_dds"}
+SYSTEM = BASE | {"furrow_log", "furrow_msgs", "furrow_graph", "furrow_configuration", "furrow_dds"}
 LAYERS = {
     "furrow_cmake": set(),
     "furrow_core": {"furrow_cmake"},
@@ -42,9 +42,10 @@ LAYERS = {
     "furrow_log": BASE,
     "furrow_msgs": BASE,
     "furrow_graph": BASE | {"furrow_log", "furrow_msgs"},
+    "furrow_configuration": BASE | {"furrow_graph"},
     "furrow_dds": BASE | {"furrow_log", "furrow_msgs", "furrow_graph"},
     "furrow_recording": BASE | {"furrow_msgs", "furrow_graph", "furrow_dds"},
-    "furrow_components": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph"},
+    "furrow_components": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph", "furrow_configuration"},
     "furrow_experiments": ALGORITHMS | BASE | {"furrow_msgs", "furrow_graph", "furrow_components"},
     "furrow_launch": SYSTEM | {"furrow_components", "furrow_ledger", "furrow_field",
                                "furrow_geometry", "furrow_recording"},
@@ -64,7 +65,7 @@ RESTRICTED = [
     ("Fast DDS", re.compile(r"^(fastdds|fastrtps)/"), {"fastrtps", "fastdds"}, {"furrow_dds"}),
     ("Fast CDR", re.compile(r"^fastcdr/"), {"fastcdr"}, {"furrow_dds", "furrow_msgs"}),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"), {"yaml-cpp"},
-     {"furrow_annotation", "furrow_graph", "furrow_recording", "furrow_vision"}),
+     {"furrow_annotation", "furrow_configuration", "furrow_recording", "furrow_vision"}),
     ("spdlog", re.compile(r"^spdlog/"), {"spdlog"}, {"furrow_log"}),
     ("CLI11", re.compile(r"^CLI/"), {"CLI11"}, {"furrow_cli"}),
 ]

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_graph/graph_check.hpp"
 #include "furrow_launch/graph_picture.hpp"
 #include "furrow_launch/graph_setup.hpp"
@@ -32,9 +33,9 @@ int show(const GraphOptions& options) {
   graph::Registry registry = launch::make_registry();
   const launch::PreparedGraph prepared = launch::prepare_graph(options.graph, options.settings);
   const auto connections = graph::check_graph(prepared.spec, registry);
-  const auto deployment = graph::load_deployment(
+  const auto deployment = configuration::load_deployment(
       launch::find_shipped(options.deploy.empty() ? "composed" : options.deploy, "deploy"));
-  const auto processes = graph::place_components(prepared.spec, deployment);
+  const auto processes = configuration::place_components(prepared.spec, deployment);
   if (svg) {
     write_or_throw(*svg, launch::graph_picture(prepared.spec, connections, processes));
     std::cout << "picture: " << svg->path().string() << '\n';
@@ -61,8 +62,9 @@ int check(const GraphOptions& options) {
   const launch::PreparedGraph prepared = launch::prepare_graph(options.graph, options.settings);
   const auto connections = graph::check_graph(prepared.spec, registry);
   if (!options.deploy.empty()) {
-    (void)graph::place_components(
-        prepared.spec, graph::load_deployment(launch::find_shipped(options.deploy, "deploy")));
+    (void)configuration::place_components(
+        prepared.spec,
+        configuration::load_deployment(launch::find_shipped(options.deploy, "deploy")));
   }
   std::cout << prepared.spec.name << " is well: " << prepared.spec.components.size()
             << " components, " << connections.size() << " topics\n";

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "furrow_configuration/parameter_file.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_field/field_csv.hpp"
 #include "furrow_field/field_geojson.hpp"
 #include "furrow_field/generator.hpp"
-#include "furrow_graph/parameter_file.hpp"
 
 namespace furrow::components {
 namespace {
@@ -21,7 +21,7 @@ T value_or_throw(Result<T> result) {
 
 field::SpeciesTable load_species(const std::filesystem::path& path) {
   if (path.empty()) return field::SpeciesTable::defaults();
-  return field::SpeciesTable(graph::load_parameter_list<field::Species>(path, "species"));
+  return field::SpeciesTable(configuration::load_parameter_list<field::Species>(path, "species"));
 }
 
 field::FieldModel load_field(const std::filesystem::path& path, const field::SpeciesTable& species,
@@ -37,7 +37,7 @@ field::FieldModel load_field(const std::filesystem::path& path, const field::Spe
     throw ConfigError({path.string(), 0}, "",
                       "is not a field file: use .yaml (a preset), .csv or .geojson");
   }
-  auto parameters = graph::load_parameter_file<field::FieldParameters>(path);
+  auto parameters = configuration::load_parameter_file<field::FieldParameters>(path);
   if (length_m > 0.0) parameters.length_m = length_m;
   auto field = field::generate_field(parameters, species, seed);
   if (!field.ok()) throw ConfigError({path.string(), 0}, "", field.error().message);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "furrow_graph/parameter_file.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 
 namespace furrow::components {
 
@@ -13,7 +13,7 @@ void CalibratedNozzle::visit(ParameterVisitor& v) {
 }
 
 std::vector<CalibratedNozzle> load_nozzle_file(const std::filesystem::path& path) {
-  auto nozzles = graph::load_parameter_list<CalibratedNozzle>(path, "nozzles");
+  auto nozzles = configuration::load_parameter_list<CalibratedNozzle>(path, "nozzles");
   std::set<std::string> seen;
   for (const CalibratedNozzle& nozzle : nozzles) {
     if (nozzle.axis.empty()) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_configuration/graph_file.hpp"
 #include "furrow_graph/graph_check.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -201,7 +202,8 @@ std::vector<CalibratedNozzle> nozzles_of(const launch::PreparedGraph& prepared) 
 components::LandingOffsets run_pattern(const launch::PreparedGraph& prepared,
                                        const std::vector<CalibratedNozzle>& nozzles,
                                        const PatternOptions& options) {
-  const auto tool = geometry::load_tool_model(graph::common_text(prepared.spec, "tool_file"));
+  const auto tool =
+      geometry::load_tool_model(configuration::common_text(prepared.spec, "tool_file"));
   components::LandingOffsets landings;
   for (std::size_t i = 0; i < options.speeds_mps.size(); ++i) {
     graph::Registry registry = launch::make_registry();

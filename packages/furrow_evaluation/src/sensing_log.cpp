@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "furrow_components/field_conversion.hpp"
+#include "furrow_configuration/graph_file.hpp"
 #include "furrow_geometry/tool_model.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -114,7 +115,7 @@ void count_visible(const std::vector<ShownPlant>& shown, const Eigen::Isometry3d
 SensingLog record_sensing(const SensingOptions& options) {
   launch::PreparedGraph prepared = launch::prepare_graph(options.graph, options.settings);
   const geometry::ToolModel tool =
-      geometry::load_tool_model(graph::common_text(prepared.spec, "tool_file"));
+      geometry::load_tool_model(configuration::common_text(prepared.spec, "tool_file"));
   if (tool.cameras.empty()) throw ConfigError("the tool has no camera");
   graph::Registry registry = launch::make_registry();
   const auto collector = std::make_shared<Collector>();

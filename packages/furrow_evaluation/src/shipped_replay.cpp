@@ -1,6 +1,6 @@
 #include "furrow_components/track_field.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 #include "furrow_evaluation/tracking_experiment.hpp"
-#include "furrow_graph/parameter_file.hpp"
 #include "furrow_launch/installation.hpp"
 
 namespace furrow::evaluation {
@@ -33,11 +33,11 @@ struct LocalizationFile {
 
 ReplayOptions shipped_replay_options() {
   ReplayOptions replay;
-  const auto tracker =
-      graph::load_parameter_file<TrackerFile>(launch::find_shipped("tracker", "components"));
+  const auto tracker = configuration::load_parameter_file<TrackerFile>(
+      launch::find_shipped("tracker", "components"));
   replay.observation = tracker.observation;
   replay.tracker = tracker.tracker;
-  const auto localization = graph::load_parameter_file<LocalizationFile>(
+  const auto localization = configuration::load_parameter_file<LocalizationFile>(
       launch::find_shipped("localization_rtk", "components"));
   replay.filter = localization.filter;
   replay.georeference = localization.georeference;

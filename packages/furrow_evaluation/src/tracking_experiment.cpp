@@ -7,6 +7,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "furrow_configuration/graph_file.hpp"
 #include "furrow_core/statistics.hpp"
 #include "furrow_launch/graph_setup.hpp"
 #include "furrow_launch/installation.hpp"
@@ -93,7 +94,7 @@ class Pool {
 geometry::ToolModel tool_of(const SensingOptions& options) {
   const launch::PreparedGraph prepared = launch::prepare_graph(options.graph, options.settings);
   geometry::ToolModel tool =
-      geometry::load_tool_model(graph::common_text(prepared.spec, "tool_file"));
+      geometry::load_tool_model(configuration::common_text(prepared.spec, "tool_file"));
   if (tool.cameras.empty()) throw ConfigError("the tool has no camera");
   return tool;
 }

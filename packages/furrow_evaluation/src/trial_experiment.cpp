@@ -7,11 +7,11 @@
 #include "furrow_components/field_conversion.hpp"
 #include "furrow_components/field_source.hpp"
 #include "furrow_components/run_record_conversion.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_core/version.hpp"
 #include "furrow_field/field_csv.hpp"
 #include "furrow_field/generator.hpp"
-#include "furrow_graph/parameter_file.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_launch/graph_setup.hpp"
 #include "furrow_launch/installation.hpp"
@@ -35,7 +35,7 @@ std::string name_of(const TrialRegion& region) {
 
 std::filesystem::path write_field(const TrialExperiment& experiment, const TrialRegion& region,
                                   std::uint64_t seed) {
-  auto parameters = graph::load_parameter_file<field::FieldParameters>(
+  auto parameters = configuration::load_parameter_file<field::FieldParameters>(
       launch::find_shipped(region.field, "fields"));
   parameters.crop = region.crop;
   parameters.length_m = experiment.length_m;

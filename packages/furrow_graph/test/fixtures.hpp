@@ -2,50 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_msgs/furrow_msgs.h"
 #include "furrow_msgs/std_msgs.h"
 
 namespace furrow::graph::test {
-
-/// A fresh folder for the running test.
-inline std::filesystem::path scratch_folder() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(testing::TempDir()) / "furrow_graph" /
-                      info->test_suite_name() / info->name();
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
-
-inline std::filesystem::path write(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::create_directories(path.parent_path());
-  std::ofstream(path) << text;
-  return path;
-}
-
-/// The text of the ConfigError that `call` throws, without the scratch folder; "" if it throws
-/// none.
-template <class Call>
-std::string error_of(const std::filesystem::path& folder, Call call) {
-  try {
-    call();
-  } catch (const ConfigError& error) {
-    std::string text = error.what();
-    const std::string prefix = folder.string() + "/";
-    for (auto at = text.find(prefix); !folder.empty() && at != std::string::npos;
-         at = text.find(prefix)) {
-      text.erase(at, prefix.size());
-    }
-    return text;
-  }
-  return "";
-}
 
 /// Publishes numbered Tracks messages at a rate.
 struct SourceParameters {

@@ -1,6 +1,7 @@
 #include "furrow_graph/graph_check.hpp"
 
 #include "fixtures.hpp"
+#include "furrow_core/test_support/config_error.hpp"
 
 namespace furrow::graph {
 namespace {
@@ -9,7 +10,7 @@ using test::spec;
 
 std::string error(const GraphSpec& graph) {
   Registry registry = test::standard_registry();
-  return test::error_of("", [&] { check_graph(graph, registry); });
+  return error_of("", [&] { check_graph(graph, registry); });
 }
 
 TEST(GraphCheck, ListsConnectionsByTopic) {
@@ -93,7 +94,7 @@ std::string error_with_origins(const GraphSpec& graph) {
     type.make = [](Context&) { return std::make_unique<Component>(); };
     registry.add(std::move(type));
   }
-  return test::error_of("", [&] { check_graph(graph, registry); });
+  return error_of("", [&] { check_graph(graph, registry); });
 }
 
 TEST(GraphCheck, SharedParameterMustBeTheSameInAllComponents) {
@@ -143,7 +144,7 @@ TEST(GraphCheck, AnIncompatibleQosNamesThePolicy) {
   graph.components = {spec("w", "writer"), spec("r", "reader")};
   graph.components[1].remaps = {{"robot_description", "text"}};
   EXPECT_EQ(
-      test::error_of("", [&] { check_graph(graph, registry); }),
+      error_of("", [&] { check_graph(graph, registry); }),
       "graph.yaml:1: r: topic 'text': incompatible QoS: durability: offered volatile, requested "
       "transient local");
 }

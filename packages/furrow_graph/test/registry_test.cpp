@@ -1,6 +1,8 @@
 #include "furrow_graph/registry.hpp"
 
 #include "fixtures.hpp"
+#include "furrow_core/test_support/config_error.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
 
 namespace furrow::graph {
 namespace {
@@ -12,17 +14,18 @@ TEST(Registry, NamesAreUnique) {
 }
 
 TEST(Registry, AFileThatIsNoLibraryIsAnError) {
-  const auto folder = test::scratch_folder();
-  const auto path = test::write(folder / "libfurrow_component_x.so", "not a library");
+  const TemporaryFolder temporary;
+  const auto& folder = temporary.path();
+  const auto path = write_text(folder / "libfurrow_component_x.so", "not a library");
   Registry registry;
   registry.add_search_folder(folder);
-  EXPECT_NE(test::error_of(folder,
-                           [&] {
-                             registry.find("x", {"g.yaml", 2});
-                           })
+  EXPECT_NE(error_of(folder,
+                     [&] {
+                       registry.find("x", {"g.yaml", 2});
+                     })
                 .find("cannot load"),
             std::string::npos);
-  EXPECT_EQ(test::error_of(folder, [&] { registry.load_library("libm.so.6"); }),
+  EXPECT_EQ(error_of(folder, [&] { registry.load_library("libm.so.6"); }),
             "libm.so.6: is not a component library: no furrow_register");
 }
 

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "fixtures.hpp"
+#include "furrow_core/test_support/config_error.hpp"
 
 namespace furrow::graph {
 namespace {
@@ -125,8 +126,7 @@ TEST(Runtime, AThrowingConstructorNamesTheComponent) {
   registry.add(std::move(bad));
   GraphSpec graph;
   graph.components = {spec("b", "bad")};
-  EXPECT_EQ(test::error_of("", [&] { Runtime(graph, registry, {}); }),
-            "graph.yaml:1: b: no such device");
+  EXPECT_EQ(error_of("", [&] { Runtime(graph, registry, {}); }), "graph.yaml:1: b: no such device");
 }
 
 TEST(Runtime, AnUndescribedPortIsAnError) {
@@ -139,7 +139,7 @@ TEST(Runtime, AnUndescribedPortIsAnError) {
   registry.add(std::move(sly));
   GraphSpec graph;
   graph.components = {spec("s", "sly")};
-  EXPECT_EQ(test::error_of("", [&] { Runtime(graph, registry, {}); }),
+  EXPECT_EQ(error_of("", [&] { Runtime(graph, registry, {}); }),
             "graph.yaml:1: s: class 'sly' does not describe its port 'planner/plan'");
 }
 

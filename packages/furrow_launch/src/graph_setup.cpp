@@ -2,21 +2,22 @@
 
 #include <map>
 
+#include "furrow_configuration/graph_file.hpp"
 #include "furrow_launch/installation.hpp"
 
 namespace furrow::launch {
 
 PreparedGraph prepare_graph(const std::string& graph, const std::vector<std::string>& settings) {
   PreparedGraph prepared;
-  prepared.spec = graph::load_graph(find_shipped(graph, "graph"));
+  prepared.spec = configuration::load_graph(find_shipped(graph, "graph"));
   // The tool decides how many axis drivers there are, so that its setting must come first.
   std::vector<std::string> common;
   std::vector<std::string> others;
   for (const std::string& setting : settings) {
     (setting.starts_with("common.") ? common : others).push_back(setting);
   }
-  graph::apply_settings(prepared.spec, common);
-  const std::string tool = graph::common_text(prepared.spec, "tool_file");
+  configuration::apply_settings(prepared.spec, common);
+  const std::string tool = configuration::common_text(prepared.spec, "tool_file");
   if (!tool.empty()) {
     prepared.tool = geometry::load_tool_model(tool);
     for (const geometry::AxisModel& axis : prepared.tool.axes) {
@@ -25,8 +26,8 @@ PreparedGraph prepare_graph(const std::string& graph, const std::vector<std::str
   }
   std::map<std::string, std::vector<std::string>> lists;
   if (!prepared.axes.empty()) lists["axes"] = prepared.axes;
-  graph::expand_lists(prepared.spec, lists);
-  graph::apply_settings(prepared.spec, others);
+  configuration::expand_lists(prepared.spec, lists);
+  configuration::apply_settings(prepared.spec, others);
   return prepared;
 }
 

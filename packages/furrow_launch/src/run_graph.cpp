@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "furrow_configuration/graph_file.hpp"
 #include "furrow_core/text.hpp"
 #include "furrow_graph/graph_check.hpp"
 #include "furrow_log/level.hpp"
@@ -154,7 +155,7 @@ PreparedGraph prepare_run(const RunOptions& options, graph::Registry& registry) 
   PreparedGraph prepared = prepare_graph(options.graph, settings);
   if (!options.recordings.empty()) replace_world(prepared.spec, registry, options);
   if (!options.record.empty()) add_recorder(prepared.spec, options);
-  graph::apply_settings(prepared.spec, of_recordings);
+  configuration::apply_settings(prepared.spec, of_recordings);
   if (!options.recordings.empty()) check_recording(prepared.spec, registry);
   check_log_levels(prepared.spec, options.log_levels);
   return prepared;

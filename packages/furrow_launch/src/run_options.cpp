@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_core/text.hpp"
 #include "furrow_launch/installation.hpp"
@@ -18,10 +19,11 @@ bool names_domain(const std::vector<GivenParameter>& parameters) {
 
 /// The domain of the command line is a setting like the others; that of the environment counts
 /// only where the deployment names none.
-void apply_domain(graph::DeploymentSpec& deployment, const RunOptions& options) {
+void apply_domain(configuration::DeploymentSpec& deployment, const RunOptions& options) {
   const bool named = names_domain(deployment.transport);
   const auto domain = options.domain_id || named ? options.domain_id : domain_from_environment();
-  if (domain) graph::apply_transport_settings(deployment, {"domain_id=" + std::to_string(*domain)});
+  if (domain)
+    configuration::apply_transport_settings(deployment, {"domain_id=" + std::to_string(*domain)});
 }
 
 void add_all(std::vector<std::string>& arguments, const std::string& option,
@@ -54,11 +56,11 @@ std::vector<std::string> all_settings(const RunOptions& options) {
   return settings;
 }
 
-graph::DeploymentSpec prepare_deployment(const RunOptions& options) {
-  auto deployment = graph::load_deployment(find_shipped(options.deploy, "deploy"));
-  graph::apply_addresses(deployment, options.addresses);
+configuration::DeploymentSpec prepare_deployment(const RunOptions& options) {
+  auto deployment = configuration::load_deployment(find_shipped(options.deploy, "deploy"));
+  configuration::apply_addresses(deployment, options.addresses);
   apply_domain(deployment, options);
-  graph::apply_transport_settings(deployment, options.dds_settings);
+  configuration::apply_transport_settings(deployment, options.dds_settings);
   return deployment;
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_dds/dds_transport.hpp"
 #include "furrow_graph/graph_check.hpp"
@@ -23,7 +24,7 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kPatienceWithInterrupt{5};
 
 const graph::PlacedProcess& pick_process(const std::vector<graph::PlacedProcess>& placed,
-                                         const graph::DeploymentSpec& deployment,
+                                         const configuration::DeploymentSpec& deployment,
                                          const std::string& wanted) {
   if (wanted.empty() && placed.size() == 1) return placed.front();
   std::string names;
@@ -73,7 +74,7 @@ RunSession::RunSession(const RunOptions& options, const std::string& process, bo
       registry_(make_registry()),
       prepared_(prepare_run(options, registry_)),
       deployment_(prepare_deployment(options)),
-      placed_(graph::place_components(prepared_.spec, deployment_)),
+      placed_(configuration::place_components(prepared_.spec, deployment_)),
       process_(pick_process(placed_, deployment_, process)),
       end_(end_of(prepared_.spec, placed_, process_, options.lockstep())) {
   (void)graph::check_graph(prepared_.spec, registry_);
@@ -88,7 +89,8 @@ RunSession::RunSession(const RunOptions& options, const std::string& process, bo
 dds::DdsParameters RunSession::dds_parameters() const {
   dds::DdsParameters parameters;
   parameters.process_name = process_.name;
-  ParameterLoader::load(graph::transport_parameters(deployment_, process_.host), parameters);
+  ParameterLoader::load(configuration::transport_parameters(deployment_, process_.host),
+                        parameters);
   return parameters;
 }
 

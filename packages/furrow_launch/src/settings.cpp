@@ -1,6 +1,6 @@
 #include "furrow_launch/settings.hpp"
 
-#include "furrow_graph/parameter_file.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 
 namespace furrow::launch {
 
@@ -12,7 +12,7 @@ std::vector<GivenParameter> given_parameters(const std::vector<std::string>& set
     const SourceLocation where{option + " " + setting, 0};
     if (equals == std::string::npos) throw ConfigError(where, "", "is not KEY=VALUE");
     given.push_back({setting.substr(0, equals),
-                     graph::parse_parameter_value(setting.substr(equals + 1)), where});
+                     configuration::parse_parameter_value(setting.substr(equals + 1)), where});
   }
   return given;
 }

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_core/error.hpp"
-#include "furrow_graph/graph_file.hpp"
 
 namespace furrow::launch {
 
@@ -26,8 +26,8 @@ std::optional<std::int64_t> domain_from_environment() {
 
 dds::DdsParameters transport_parameters(const TransportOptions& options,
                                         const std::string& process_name) {
-  graph::DeploymentSpec deployment;
-  graph::apply_transport_settings(deployment, options.settings);
+  configuration::DeploymentSpec deployment;
+  configuration::apply_transport_settings(deployment, options.settings);
   dds::DdsParameters parameters;
   parameters.domain_id =
       options.domain_id ? *options.domain_id : domain_from_environment().value_or(0);

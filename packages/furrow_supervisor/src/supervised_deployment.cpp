@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_dds/discovery_server.hpp"
 #include "furrow_graph/graph_check.hpp"
@@ -19,9 +20,9 @@ namespace {
 
 constexpr char kLogName[] = "supervisor";
 
-std::string pick_host(const graph::DeploymentSpec& deployment, const std::string& wanted) {
+std::string pick_host(const configuration::DeploymentSpec& deployment, const std::string& wanted) {
   std::string names;
-  for (const graph::HostSpec& host : deployment.hosts) {
+  for (const configuration::HostSpec& host : deployment.hosts) {
     if (host.name == wanted) return wanted;
     names += (names.empty() ? "" : ", ") + host.name;
   }
@@ -51,9 +52,9 @@ std::vector<std::string> drivers_without_latches(const graph::GraphSpec& graph) 
 }
 
 /// Where the deployment's processes find each other, when that is this host.
-std::unique_ptr<dds::DiscoveryServer> make_discovery_server(const graph::DeploymentSpec& deployment,
-                                                            const std::string& host,
-                                                            const dds::DdsParameters& dds) {
+std::unique_ptr<dds::DiscoveryServer> make_discovery_server(
+    const configuration::DeploymentSpec& deployment, const std::string& host,
+    const dds::DdsParameters& dds) {
   if (dds.discovery != "discovery_server" || deployment.hosts.empty() ||
       deployment.hosts.front().name != host || dds.peers.empty()) {
     return nullptr;
@@ -69,10 +70,10 @@ SupervisedDeployment::SupervisedDeployment(launch::RunOptions options, const std
   const launch::PreparedGraph prepared = launch::prepare_run(options_, registry);
   (void)graph::check_graph(prepared.spec, registry);
   deployment_ = launch::prepare_deployment(options_);
-  const auto placed = graph::place_components(prepared.spec, deployment_);
+  const auto placed = configuration::place_components(prepared.spec, deployment_);
   host_ = pick_host(deployment_, host);
   drivers_without_latches_ = drivers_without_latches(prepared.spec);
-  ParameterLoader::load(graph::transport_parameters(deployment_, host_), dds_);
+  ParameterLoader::load(configuration::transport_parameters(deployment_, host_), dds_);
   for (const graph::PlacedProcess& process : placed) {
     if (process.host != host_) continue;
     processes_.push_back({.name = process.name,

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/registry.hpp"
 
 namespace furrow::evaluation {

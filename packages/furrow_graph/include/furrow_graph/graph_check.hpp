@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/registry.hpp"
 
 namespace furrow::graph {

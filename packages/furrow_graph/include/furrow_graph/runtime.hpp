@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "furrow_core/time.hpp"
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/health.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/transport.hpp"

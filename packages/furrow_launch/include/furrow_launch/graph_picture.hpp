@@ -4,7 +4,7 @@
 #include <string>
 
 #include "furrow_graph/graph_check.hpp"
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 
 namespace furrow::launch {
 

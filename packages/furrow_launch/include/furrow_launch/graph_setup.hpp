@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "furrow_geometry/tool_model.hpp"
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 
 namespace furrow::launch {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_msgs/diagnostic_msgs.h"
 #include "furrow_msgs/furrow_msgs.h"

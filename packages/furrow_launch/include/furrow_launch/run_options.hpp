@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_configuration/deployment_file.hpp"
 
 namespace furrow::launch {
 
@@ -38,7 +38,7 @@ struct RunOptions {
 
 /// The deployment with the addresses, the domain and the DDS settings of the options. Throws
 /// ConfigError.
-[[nodiscard]] graph::DeploymentSpec prepare_deployment(const RunOptions& options);
+[[nodiscard]] configuration::DeploymentSpec prepare_deployment(const RunOptions& options);
 
 /// Arguments of `furrow` that run a process with the same options.
 [[nodiscard]] std::vector<std::string> run_arguments(const RunOptions& options);

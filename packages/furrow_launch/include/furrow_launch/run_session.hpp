@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_dds/dds_parameters.hpp"
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_launch/graph_setup.hpp"
@@ -68,7 +69,7 @@ class RunSession {
   bool use_dds_;
   graph::Registry registry_;
   PreparedGraph prepared_;
-  graph::DeploymentSpec deployment_;
+  configuration::DeploymentSpec deployment_;
   std::vector<graph::PlacedProcess> placed_;
   graph::PlacedProcess process_;
   RunEnd end_ = RunEnd::kRecord;

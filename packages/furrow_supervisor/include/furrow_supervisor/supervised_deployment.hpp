@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "furrow_configuration/deployment_file.hpp"
 #include "furrow_dds/dds_parameters.hpp"
-#include "furrow_graph/graph_file.hpp"
 #include "furrow_launch/run_options.hpp"
 #include "furrow_log/log.hpp"
 #include "furrow_supervisor/supervisor.hpp"
@@ -45,7 +45,7 @@ class SupervisedDeployment {
   [[nodiscard]] std::vector<SupervisedProcess> commands(const RunParameters& parameters) const;
 
   launch::RunOptions options_;
-  graph::DeploymentSpec deployment_;
+  configuration::DeploymentSpec deployment_;
   std::string host_;
   dds::DdsParameters dds_;
   std::vector<std::string> drivers_without_latches_;

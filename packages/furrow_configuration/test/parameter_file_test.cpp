@@ -1,13 +1,12 @@
-#include "furrow_graph/parameter_file.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 
-#include "fixtures.hpp"
+#include <gtest/gtest.h>
 
-namespace furrow::graph {
+#include "furrow_core/test_support/config_error.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
+
+namespace furrow::configuration {
 namespace {
-
-using test::error_of;
-using test::scratch_folder;
-using test::write;
 
 struct Parameters {
   double rate_hz = 1.0;
@@ -32,17 +31,19 @@ TEST(ParameterFile, ReadsValuesOfEveryType) {
 }
 
 TEST(ParameterFile, RelativePathsStartAtTheFilesFolder) {
-  const auto folder = scratch_folder();
-  const auto path = write(folder / "a" / "p.yaml", "tool_file: ../b/x.urdf\nrate_hz: 4\n");
+  const TemporaryFolder temporary;
+  const auto& folder = temporary.path();
+  const auto path = write_text(folder / "a" / "p.yaml", "tool_file: ../b/x.urdf\nrate_hz: 4\n");
   const auto parameters = load_parameter_file<Parameters>(path);
   EXPECT_EQ(parameters.tool_file, (folder / "b" / "x.urdf").string());
   EXPECT_EQ(parameters.rate_hz, 4.0);
 }
 
 TEST(ParameterFile, AnErrorNamesFileLineAndKey) {
-  const auto folder = scratch_folder();
+  const TemporaryFolder temporary;
+  const auto& folder = temporary.path();
   const auto load = [&](const std::string& text) {
-    const auto path = write(folder / "p.yaml", text);
+    const auto path = write_text(folder / "p.yaml", text);
     return error_of(folder, [&] { (void)load_parameter_file<Parameters>(path); });
   };
   EXPECT_EQ(load("rate_hz: 1\nrate_hz: 2\n"), "p.yaml:2: rate_hz: is given twice");
@@ -55,8 +56,9 @@ TEST(ParameterFile, AnErrorNamesFileLineAndKey) {
 }
 
 TEST(ParameterFile, ReadsListsOfMaps) {
-  const auto folder = scratch_folder();
-  const auto path = write(folder / "l.yaml", "things:\n  - {rate_hz: 2}\n  - {names: [x]}\n");
+  const TemporaryFolder temporary;
+  const auto& folder = temporary.path();
+  const auto path = write_text(folder / "l.yaml", "things:\n  - {rate_hz: 2}\n  - {names: [x]}\n");
   const auto things = load_parameter_list<Parameters>(path, "things");
   ASSERT_EQ(things.size(), 2u);
   EXPECT_EQ(things[0].rate_hz, 2.0);
@@ -66,4 +68,4 @@ TEST(ParameterFile, ReadsListsOfMaps) {
 }
 
 }  // namespace
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

@@ -10,7 +10,7 @@
 
 #include "furrow_core/parameters.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 
 /// A YAML file with the locations of its nodes.
 class YamlSource {
@@ -40,4 +40,4 @@ class YamlSource {
   YAML::Node root_;
 };
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

@@ -1,12 +1,13 @@
+#include "furrow_configuration/deployment_file.hpp"
+
 #include <algorithm>
 #include <set>
 
-#include "furrow_graph/graph_file.hpp"
-#include "furrow_graph/parameter_file.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 #include "merge.hpp"
 #include "yaml_source.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 namespace {
 
 bool flag(const YamlSource& source, const YAML::Node& node, const std::string& key) {
@@ -144,7 +145,7 @@ namespace {
 /// Assigns each component to a process.
 class Placement {
  public:
-  explicit Placement(const GraphSpec& graph) : graph_(graph) {}
+  explicit Placement(const graph::GraphSpec& graph) : graph_(graph) {}
 
   /// Assigns the components that `wanted` names to `process`.
   void take(const ProcessSpec& process, const std::string& wanted) {
@@ -152,7 +153,7 @@ class Placement {
     const bool optional = wanted.ends_with('?');
     const std::string name = optional ? wanted.substr(0, wanted.size() - 1) : wanted;
     bool found = optional;
-    for (const ComponentSpec& component : graph_.components) {
+    for (const graph::ComponentSpec& component : graph_.components) {
       if (name != component.name && name != component.group) continue;
       found = true;
       const auto [it, first] = process_of_.emplace(component.name, &process);
@@ -168,14 +169,14 @@ class Placement {
   }
 
   void take_rest(const ProcessSpec& process) {
-    for (const ComponentSpec& component : graph_.components) {
+    for (const graph::ComponentSpec& component : graph_.components) {
       process_of_.emplace(component.name, &process);
     }
   }
 
   [[nodiscard]] std::vector<std::string> components_of(const ProcessSpec& process) const {
     std::vector<std::string> names;
-    for (const ComponentSpec& component : graph_.components) {
+    for (const graph::ComponentSpec& component : graph_.components) {
       const auto it = process_of_.find(component.name);
       if (it != process_of_.end() && it->second == &process) names.push_back(component.name);
     }
@@ -183,7 +184,7 @@ class Placement {
   }
 
   void check_complete(const DeploymentSpec& deployment) const {
-    for (const ComponentSpec& component : graph_.components) {
+    for (const graph::ComponentSpec& component : graph_.components) {
       if (!process_of_.contains(component.name)) {
         throw ConfigError(deployment.where, "processes",
                           "component '" + component.name + "' is in no process");
@@ -192,13 +193,14 @@ class Placement {
   }
 
  private:
-  const GraphSpec& graph_;
+  const graph::GraphSpec& graph_;
   std::map<std::string, const ProcessSpec*> process_of_;
 };
 
-void check_names(const DeploymentSpec& deployment, const std::vector<PlacedProcess>& placed) {
+void check_names(const DeploymentSpec& deployment,
+                 const std::vector<graph::PlacedProcess>& placed) {
   std::set<std::string> names;
-  for (const PlacedProcess& process : placed) {
+  for (const graph::PlacedProcess& process : placed) {
     if (!names.insert(process.name).second) {
       throw ConfigError(deployment.where, "processes",
                         "process '" + process.name + "' is given twice");
@@ -208,8 +210,8 @@ void check_names(const DeploymentSpec& deployment, const std::vector<PlacedProce
 
 }  // namespace
 
-std::vector<PlacedProcess> place_components(const GraphSpec& graph,
-                                            const DeploymentSpec& deployment) {
+std::vector<graph::PlacedProcess> place_components(const graph::GraphSpec& graph,
+                                                   const DeploymentSpec& deployment) {
   Placement placement(graph);
   for (const ProcessSpec& process : deployment.processes) {
     for (const std::string& wanted : process.components) placement.take(process, wanted);
@@ -220,7 +222,7 @@ std::vector<PlacedProcess> place_components(const GraphSpec& graph,
     }
   }
   placement.check_complete(deployment);
-  std::vector<PlacedProcess> placed;
+  std::vector<graph::PlacedProcess> placed;
   for (const ProcessSpec& process : deployment.processes) {
     std::vector<std::string> names = placement.components_of(process);
     if (process.each) {
@@ -235,4 +237,4 @@ std::vector<PlacedProcess> place_components(const GraphSpec& graph,
   return placed;
 }
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

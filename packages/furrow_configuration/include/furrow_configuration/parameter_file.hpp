@@ -7,7 +7,7 @@
 
 #include "furrow_core/parameters.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 
 /// The entries of a YAML file that is one map of parameters. Throws ConfigError with file and line.
 /// Names that end in _file or _folder hold paths: relative ones are taken from the file's folder.
@@ -38,4 +38,4 @@ template <class Parameters>
   return entries;
 }
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

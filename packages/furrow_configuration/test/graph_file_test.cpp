@@ -1,13 +1,13 @@
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_configuration/graph_file.hpp"
 
-#include "fixtures.hpp"
+#include <gtest/gtest.h>
 
-namespace furrow::graph {
+#include "furrow_configuration/deployment_file.hpp"
+#include "furrow_core/test_support/config_error.hpp"
+#include "furrow_core/test_support/temporary_folder.hpp"
+
+namespace furrow::configuration {
 namespace {
-
-using test::error_of;
-using test::scratch_folder;
-using test::write;
 
 constexpr char kGraph[] = R"(graph: example
 common: {rate_hz: 5, tool_file: tool.urdf}
@@ -22,16 +22,19 @@ components:
 
 class GraphFile : public testing::Test {
  protected:
-  GraphSpec load(const std::string& text) { return load_graph(write(folder_ / "g.yaml", text)); }
+  graph::GraphSpec load(const std::string& text) {
+    return load_graph(write_text(folder_ / "g.yaml", text));
+  }
   std::string error(const std::string& text) {
     return error_of(folder_, [&] { (void)load(text); });
   }
-  std::filesystem::path folder_ = scratch_folder();
+  TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 TEST_F(GraphFile, LoadsComponentsWithTheirSettings) {
-  write(folder_ / "source.yaml", "label: a\nrate_hz: 3\n");
-  GraphSpec graph = load(kGraph);
+  write_text(folder_ / "source.yaml", "label: a\nrate_hz: 3\n");
+  graph::GraphSpec graph = load(kGraph);
   EXPECT_EQ(graph.name, "example");
   EXPECT_EQ(common_text(graph, "tool_file"), (folder_ / "tool.urdf").string());
   ASSERT_EQ(graph.components.size(), 2u);
@@ -47,7 +50,7 @@ TEST_F(GraphFile, LoadsComponentsWithTheirSettings) {
 }
 
 TEST_F(GraphFile, ReadsThreadAndPriorityOfAComponent) {
-  const GraphSpec graph = load(
+  const graph::GraphSpec graph = load(
       "components:\n"
       "  a: {class: b}\n"
       "  c: {class: b, thread: dedicated}\n"
@@ -89,13 +92,13 @@ TEST_F(GraphFile, AnErrorNamesFileLineAndKey) {
 }
 
 TEST_F(GraphFile, AnUnknownListIsAnError) {
-  GraphSpec graph = load("components:\n  a: {class: b, for_each: wheels, parameter: w}\n");
+  graph::GraphSpec graph = load("components:\n  a: {class: b, for_each: wheels, parameter: w}\n");
   EXPECT_EQ(error_of(folder_, [&] { expand_lists(graph, {}); }),
             "g.yaml:2: a.for_each: there is no list 'wheels'");
 }
 
 TEST_F(GraphFile, SettingsOverrideTheFile) {
-  GraphSpec graph = load(
+  graph::GraphSpec graph = load(
       "components:\n  a: {class: b, parameters: {x: 1}}\n"
       "  axis: {class: c, for_each: axes, parameter: axis}\n");
   expand_lists(graph, {{"axes", {"one", "two"}}});
@@ -111,9 +114,10 @@ TEST_F(GraphFile, SettingsOverrideTheFile) {
 }
 
 TEST_F(GraphFile, DeploymentPlacesEveryComponentOnce) {
-  const GraphSpec graph = load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
+  const graph::GraphSpec graph =
+      load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
   const auto place = [&](const std::string& text) {
-    return place_components(graph, load_deployment(write(folder_ / "d.yaml", text)));
+    return place_components(graph, load_deployment(write_text(folder_ / "d.yaml", text)));
   };
   EXPECT_EQ(place("processes: {all: \"*\"}\n").at(0).components.size(), 3u);
   const auto two = place("processes:\n  one: [c, a]\n  two: {host: h, components: [b]}\n");
@@ -137,9 +141,10 @@ TEST_F(GraphFile, DeploymentPlacesEveryComponentOnce) {
 }
 
 TEST_F(GraphFile, RemainingComponentsMayHaveAProcessEach) {
-  const GraphSpec graph = load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
+  const graph::GraphSpec graph =
+      load("components:\n  a: {class: x}\n  b: {class: x}\n  c: {class: x}\n");
   const auto place = [&](const std::string& text) {
-    return place_components(graph, load_deployment(write(folder_ / "d.yaml", text)));
+    return place_components(graph, load_deployment(write_text(folder_ / "d.yaml", text)));
   };
   const auto placed = place(
       "processes:\n  others: {components: \"*\", each: true}\n"
@@ -164,7 +169,7 @@ TEST_F(GraphFile, HostAddressesBecomeTransportParameters) {
       "hosts: {one: 10.0.0.1, two: 10.0.0.2, three: 10.0.0.3}\n"
       "processes: {p: {host: two, components: \"*\"}}\n";
   const auto load_with = [&](const std::vector<std::string>& settings) {
-    DeploymentSpec deployment = load_deployment(write(folder_ / "d.yaml", text));
+    DeploymentSpec deployment = load_deployment(write_text(folder_ / "d.yaml", text));
     apply_addresses(deployment, {"three=10.0.0.9"});
     apply_transport_settings(deployment, settings);
     std::map<std::string, std::string> values;
@@ -182,18 +187,18 @@ TEST_F(GraphFile, HostAddressesBecomeTransportParameters) {
             (Values{{"interfaces", "[10.1.1.1]"},
                     {"discovery", "discovery_server"},
                     {"peers", "[10.0.0.1]"}}));
-  DeploymentSpec deployment = load_deployment(write(folder_ / "d.yaml", text));
+  DeploymentSpec deployment = load_deployment(write_text(folder_ / "d.yaml", text));
   EXPECT_EQ(error_of(folder_, [&] { apply_addresses(deployment, {"four=10.0.0.4"}); }),
             "--address four=10.0.0.4: is not HOST=ADDRESS with a host of the deployment");
   EXPECT_EQ(error_of(folder_, [&] { apply_transport_settings(deployment, {"domain_id"}); }),
             "--wire domain_id: is not KEY=VALUE");
   EXPECT_EQ(error_of(folder_,
                      [&] {
-                       (void)load_deployment(write(
+                       (void)load_deployment(write_text(
                            folder_ / "d.yaml", "hosts: {h: 10.0.0.1}\nprocesses: {p: \"*\"}\n"));
                      }),
             "d.yaml:2: p.host: '' is not one of the hosts");
 }
 
 }  // namespace
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

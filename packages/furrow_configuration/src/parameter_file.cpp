@@ -1,8 +1,8 @@
-#include "furrow_graph/parameter_file.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 
 #include "yaml_source.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 
 std::vector<GivenParameter> read_parameter_file(const std::filesystem::path& path) {
   const YamlSource source(path);
@@ -42,4 +42,4 @@ ParameterValue parse_parameter_value(std::string_view text) {
   return std::string(text);
 }
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

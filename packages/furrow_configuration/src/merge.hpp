@@ -6,7 +6,7 @@
 
 #include "furrow_core/parameters.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 
 /// Adds a parameter, or replaces the one with its name.
 inline void merge(std::vector<GivenParameter>& parameters, GivenParameter parameter) {
@@ -18,4 +18,4 @@ inline void merge(std::vector<GivenParameter>& parameters, GivenParameter parame
   }
 }
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

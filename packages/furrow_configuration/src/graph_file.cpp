@@ -1,12 +1,12 @@
-#include "furrow_graph/graph_file.hpp"
+#include "furrow_configuration/graph_file.hpp"
 
 #include <algorithm>
 
-#include "furrow_graph/parameter_file.hpp"
+#include "furrow_configuration/parameter_file.hpp"
 #include "merge.hpp"
 #include "yaml_source.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 namespace {
 
 void check_name(const YamlSource& source, const YAML::Node& node, const std::string& name) {
@@ -19,7 +19,7 @@ void check_name(const YamlSource& source, const YAML::Node& node, const std::str
   }
 }
 
-void read_remaps(const YamlSource& source, const YAML::Node& map, ComponentSpec& spec) {
+void read_remaps(const YamlSource& source, const YAML::Node& map, graph::ComponentSpec& spec) {
   source.each(map, "remap",
               [&](const std::string& key, const YAML::Node& node, const YAML::Node& value) {
                 spec.remaps[key] = source.text(value, key);
@@ -42,9 +42,9 @@ int read_priority(const YamlSource& source, const YAML::Node& value, const std::
   throw ConfigError(source.where(value), name + ".priority", "must be a number from 0 to 99");
 }
 
-ComponentSpec read_component(const YamlSource& source, const std::string& name,
-                             const YAML::Node& name_node, const YAML::Node& map) {
-  ComponentSpec spec;
+graph::ComponentSpec read_component(const YamlSource& source, const std::string& name,
+                                    const YAML::Node& name_node, const YAML::Node& map) {
+  graph::ComponentSpec spec;
   spec.name = name;
   spec.group = name;
   spec.where = source.where(name_node);
@@ -91,9 +91,9 @@ ComponentSpec read_component(const YamlSource& source, const std::string& name,
 
 }  // namespace
 
-GraphSpec load_graph(const std::filesystem::path& path) {
+graph::GraphSpec load_graph(const std::filesystem::path& path) {
   const YamlSource source(path);
-  GraphSpec graph;
+  graph::GraphSpec graph;
   graph.where = {path.string(), 1};
   graph.name = path.stem().string();
   source.each(
@@ -121,14 +121,15 @@ GraphSpec load_graph(const std::filesystem::path& path) {
   return graph;
 }
 
-std::string common_text(const GraphSpec& graph, std::string_view name) {
+std::string common_text(const graph::GraphSpec& graph, std::string_view name) {
   const auto it = std::ranges::find(graph.common, name, &GivenParameter::name);
   return it == graph.common.end() ? "" : to_text(it->value);
 }
 
-void expand_lists(GraphSpec& graph, const std::map<std::string, std::vector<std::string>>& lists) {
-  std::vector<ComponentSpec> expanded;
-  for (ComponentSpec& spec : graph.components) {
+void expand_lists(graph::GraphSpec& graph,
+                  const std::map<std::string, std::vector<std::string>>& lists) {
+  std::vector<graph::ComponentSpec> expanded;
+  for (graph::ComponentSpec& spec : graph.components) {
     if (spec.for_each.empty()) {
       expanded.push_back(std::move(spec));
       continue;
@@ -139,7 +140,7 @@ void expand_lists(GraphSpec& graph, const std::map<std::string, std::vector<std:
                         "there is no list '" + spec.for_each + "'");
     }
     for (const std::string& entry : list->second) {
-      ComponentSpec& copy = expanded.emplace_back(spec);
+      graph::ComponentSpec& copy = expanded.emplace_back(spec);
       copy.name = spec.name + "_" + entry;
       copy.for_each.clear();
       merge(copy.parameters, {spec.for_each_parameter, entry, spec.where});
@@ -148,7 +149,7 @@ void expand_lists(GraphSpec& graph, const std::map<std::string, std::vector<std:
   graph.components = std::move(expanded);
 }
 
-void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings) {
+void apply_settings(graph::GraphSpec& graph, const std::vector<std::string>& settings) {
   for (const std::string& setting : settings) {
     const SourceLocation where{"--set " + setting, 0};
     const auto equals = setting.find('=');
@@ -161,7 +162,7 @@ void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings) 
                                    parse_parameter_value(setting.substr(equals + 1)), where};
     bool found = component == "common";
     if (found) merge(graph.common, parameter);
-    for (ComponentSpec& spec : graph.components) {
+    for (graph::ComponentSpec& spec : graph.components) {
       if (spec.name != component && spec.group != component) continue;
       merge(spec.parameters, parameter);
       found = true;
@@ -170,4 +171,4 @@ void apply_settings(GraphSpec& graph, const std::vector<std::string>& settings) 
   }
 }
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration

@@ -3,10 +3,10 @@
 #include <charconv>
 #include <set>
 
+#include "furrow_configuration/parameter_file.hpp"
 #include "furrow_core/file.hpp"
-#include "furrow_graph/parameter_file.hpp"
 
-namespace furrow::graph {
+namespace furrow::configuration {
 namespace {
 
 bool parse_integer(const std::string& text, std::int64_t& value) {
@@ -125,4 +125,4 @@ std::vector<GivenParameter> YamlSource::parameters(const YAML::Node& map,
   return given;
 }
 
-}  // namespace furrow::graph
+}  // namespace furrow::configuration
