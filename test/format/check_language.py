@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """Checks the language of comments, error and help texts and documents, and the size of sources.
 
-    check_language.py [ROOT] [--all | --file PATH...] [--update-baseline]
+    check_language.py [ROOT] [--file PATH...]
 
 Reported as FILE:LINE are sentences of more than 30 words, words that docs/glossary.md rules out,
-and functions and files that are too long. A file may not have more findings than
-language_baseline.txt allows; a file that is not listed there may have none. Exit code 1 when a file
-has more.
+and functions and files that are too long. Exit code 1 when there is a finding.
 """
 
 import argparse
@@ -24,11 +22,6 @@ FOLDERS = ("packages", "test", "tools", "launch_scripts", "idl", "params", "urdf
            "ros2", ".ci")
 GENERATED = {f"docs/reference/{name}.md" for name in ("topics", "parameters", "command_line")}
 GLOSSARY = "docs/glossary.md"
-BASELINE = "test/format/language_baseline.txt"
-BASELINE_HEAD = """\
-# Findings of check_language.py that each file may still have. A file may not get worse.
-# Write it anew after mending a file: test/format/check_language.py --update-baseline
-"""
 
 Finding = collections.namedtuple("Finding", "path line message")
 Rule = collections.namedtuple("Rule", "pattern wrong right except_in")
@@ -125,22 +118,6 @@ def source_files(root):
             yield shown
 
 
-def read_baseline(text):
-    pairs = (line.split(maxsplit=1) for line in text.split("\n") if line and line[0] != "#")
-    return {path: int(count) for count, path in pairs}
-
-
-def write_baseline(findings):
-    counts = collections.Counter(finding.path for finding in findings)
-    return BASELINE_HEAD + "".join(f"{counts[path]} {path}\n" for path in sorted(counts))
-
-
-def worse_files(findings, baseline):
-    """Paths with more findings than the baseline allows."""
-    counts = collections.Counter(finding.path for finding in findings)
-    return {path for path, count in counts.items() if count > baseline.get(path, 0)}
-
-
 def totals(findings):
     """A line for each package or folder, the one with most findings first."""
     counts = collections.Counter()
@@ -155,11 +132,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("root", type=pathlib.Path, nargs="?",
                         default=pathlib.Path(__file__).resolve().parents[2])
-    parser.add_argument("--all", action="store_true", help="print every finding")
-    parser.add_argument("--file", nargs="+", default=[], metavar="PATH",
-                        help="print every finding of these files or folders")
-    parser.add_argument("--update-baseline", action="store_true",
-                        help="write the present number of findings into the baseline")
+    parser.add_argument("--file", nargs="+", default=[""], metavar="PATH",
+                        help="check only these files or folders, relative to ROOT")
     arguments = parser.parse_args()
     root = arguments.root
 
@@ -167,26 +141,19 @@ def main():
     if not rules:
         print(f"{GLOSSARY}: no table with a column \"not\" was found")
         return 1
-    findings = [finding for path in source_files(root) for finding in check_file(root, path, rules)]
-    file = root / BASELINE
-    if arguments.update_baseline:
-        file.write_text(write_baseline(findings))
-    baseline = read_baseline(file.read_text()) if file.exists() else {}
-
-    worse = worse_files(findings, baseline)
-    chosen = tuple(arguments.file)
+    paths = list(source_files(root))
+    for chosen in arguments.file:
+        if not any(path.startswith(chosen) for path in paths):
+            print(f"--file {chosen}: no file that is checked begins with this path")
+            return 2
+    findings = [finding for path in paths if path.startswith(tuple(arguments.file))
+                for finding in check_file(root, path, rules)]
     for finding in findings:
-        if arguments.all or finding.path in worse or (chosen and finding.path.startswith(chosen)):
-            print(f"{finding.path}:{finding.line}: {finding.message}")
-    print("\n".join(totals(findings)))
-    counts = collections.Counter(finding.path for finding in findings)
-    better = sorted(path for path in baseline if counts[path] < baseline[path])
-    if better:
-        print(f"{len(better)} files are better than the baseline: run --update-baseline")
-    for path in sorted(worse):
-        print(f"{path}: {counts[path]} findings; the baseline allows {baseline.get(path, 0)}")
-    print(f"{len(findings)} findings, {len(worse)} files worse than the baseline")
-    return 1 if worse else 0
+        print(f"{finding.path}:{finding.line}: {finding.message}")
+    for line in totals(findings):
+        print(line)
+    print(f"{len(findings)} findings")
+    return 1 if findings else 0
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 """The language check on made-up files: what it finds, and what it must not take for a finding."""
 
 import pathlib
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -204,13 +206,21 @@ class WorkspaceTest(unittest.TestCase):
         (self.root / "docs/reference/topics.md").write_text(long_sentence())
         self.assertEqual(list(check_language.source_files(self.root)), [])
 
-    def test_a_file_may_not_get_worse_than_the_baseline(self):
-        findings = [check_language.Finding(path, 1, "") for path in ("a", "a", "b")]
-        baseline = check_language.read_baseline(check_language.write_baseline(findings))
-        self.assertEqual(baseline, {"a": 2, "b": 1})
-        self.assertEqual(check_language.worse_files(findings[1:], baseline), set())
-        self.assertEqual(check_language.worse_files(findings + findings[2:], baseline), {"b"})
-        self.assertEqual(check_language.worse_files(findings, {}), {"a", "b"})
+    def run_check(self, *arguments):
+        return subprocess.run([sys.executable, check_language.__file__, self.root, *arguments],
+                              capture_output=True, text=True, check=False)
+
+    def test_any_finding_fails(self):
+        self.check("docs/glossary.md", GLOSSARY)
+        self.check("docs/good.md", "A delivery.\n")
+        self.assertEqual(self.run_check().returncode, 0, self.run_check().stdout)
+        self.check("docs/bad.md", "A hand-off.\n")
+        done = self.run_check()
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("docs/bad.md:1: 'hand-off': write 'delivery'", done.stdout)
+        self.assertEqual(self.run_check("--file", "docs/good.md").returncode, 0)
+        self.assertEqual(self.run_check("--file", "docs/bad.md").returncode, 1)
+        self.assertEqual(self.run_check("--file", "docs/mistyped.md").returncode, 2)
 
     def test_totals_are_per_package(self):
         findings = [check_language.Finding(path, 1, "")
