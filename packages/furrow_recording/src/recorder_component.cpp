@@ -21,7 +21,9 @@ struct Parameters {
              .description = "path of the recording, to which _0.mcap, _1.mcap, ... is added"},
             file);
     v.visit({.name = "wait_for_disk",
-             .description = "hold the graph up rather than lose a message: for lock-step only"},
+             .description =
+                 "for lock-step: hold the graph up rather than lose a message, and end chunks by "
+                 "simulated time alone"},
             wait_for_disk);
     recorder.visit(v);
   }
@@ -55,7 +57,8 @@ class RecorderComponent final : public graph::Component {
   explicit RecorderComponent(graph::Context& context)
       : context_(context),
         parameters_(context.parameters<Parameters>()),
-        recorder_(parameters_.recorder, stem_of(parameters_.file)) {
+        recorder_(parameters_.recorder, stem_of(parameters_.file),
+                  parameters_.wait_for_disk ? RecorderClock::kSimulated : RecorderClock::kReal) {
     AllTopics::for_each([this]<class T>() { subscribe<T>(); });
     context.every(Duration::milliseconds(1000), [this](Time) { report(); });
   }
@@ -85,9 +88,7 @@ class RecorderComponent final : public graph::Component {
   void record(std::size_t topic, std::shared_ptr<const void> message,
               const msgs::MessageType& type) {
     const Time came = context_.arrival();
-    if (parameters_.wait_for_disk) {
-      recorder_.record_all(topic, came, came, std::move(message), type);
-    } else if (!recorder_.record(topic, came, came, std::move(message), type)) {
+    if (!recorder_.record(topic, came, came, std::move(message), type)) {
       context_.warn("lost", "the disk is too slow; a message was not recorded");
     }
   }

@@ -47,9 +47,10 @@ Payload serialize(const QueuedMessage& queued) {
 
 class RecorderThread::Impl {
  public:
-  Impl(const RecorderParameters& parameters, std::filesystem::path stem,
+  Impl(const RecorderParameters& parameters, std::filesystem::path stem, RecorderClock clock,
        RecorderEnvironment environment)
-      : max_bytes_(static_cast<std::uint64_t>(parameters.queue_mb * 1e6)),
+      : clock_(clock),
+        max_bytes_(static_cast<std::uint64_t>(parameters.queue_mb * 1e6)),
         max_messages_(static_cast<std::size_t>(parameters.queue_messages)),
         recorder_(parameters, std::move(stem), std::move(environment)),
         status_(recorder_.status()),
@@ -84,8 +85,11 @@ class RecorderThread::Impl {
 
   bool record(QueuedMessage message) {
     {
-      const std::lock_guard lock(mutex_);
-      if (queued_messages_ >= max_messages_ || queued_bytes_ + message.bytes > max_bytes_) {
+      std::unique_lock lock(mutex_);
+      if (clock_ == RecorderClock::kSimulated) {
+        // A message larger than the whole queue enters when the queue is empty.
+        room_.wait(lock, [&] { return queued_messages_ == 0 || has_room(message); });
+      } else if (!has_room(message)) {
         ++dropped_.at(message.topic);
         return false;
       }
@@ -95,21 +99,6 @@ class RecorderThread::Impl {
     }
     wake_.notify_one();
     return true;
-  }
-
-  void record_all(QueuedMessage message) {
-    {
-      std::unique_lock lock(mutex_);
-      // A message larger than the whole queue enters when the queue is empty.
-      room_.wait(lock, [&] {
-        return queued_messages_ == 0 ||
-               (queued_messages_ < max_messages_ && queued_bytes_ + message.bytes <= max_bytes_);
-      });
-      ++queued_messages_;
-      queued_bytes_ += message.bytes;
-      queue_.emplace_back(std::move(message));
-    }
-    wake_.notify_one();
   }
 
   /// Returns when the recorder's thread has done it.
@@ -133,6 +122,10 @@ class RecorderThread::Impl {
   }
 
  private:
+  [[nodiscard]] bool has_room(const QueuedMessage& message) const {
+    return queued_messages_ < max_messages_ && queued_bytes_ + message.bytes <= max_bytes_;
+  }
+
   void run() {
     Time newest;
     Clock::time_point newest_at = Clock::now();
@@ -154,7 +147,7 @@ class RecorderThread::Impl {
           std::get<Command>(item)(recorder_);
         }
       }
-      if (idle) {
+      if (idle && clock_ == RecorderClock::kReal) {
         // On the messages' clock, which advances while no message arrives.
         const auto since = std::chrono::nanoseconds(Clock::now() - newest_at);
         (void)recorder_.tick(newest + Duration::nanoseconds(since.count()));
@@ -193,6 +186,7 @@ class RecorderThread::Impl {
     }
   }
 
+  const RecorderClock clock_;
   const std::uint64_t max_bytes_;
   const std::size_t max_messages_;
   Recorder recorder_;  ///< used by the thread only
@@ -214,8 +208,8 @@ class RecorderThread::Impl {
 };
 
 RecorderThread::RecorderThread(const RecorderParameters& parameters, std::filesystem::path stem,
-                               RecorderEnvironment environment)
-    : impl_(std::make_unique<Impl>(parameters, std::move(stem), std::move(environment))) {}
+                               RecorderClock clock, RecorderEnvironment environment)
+    : impl_(std::make_unique<Impl>(parameters, std::move(stem), clock, std::move(environment))) {}
 RecorderThread::~RecorderThread() = default;
 
 bool RecorderThread::accepts(const std::string& topic) const {
@@ -235,13 +229,6 @@ bool RecorderThread::record(std::size_t topic, Time log_time, Time publish_time,
                             std::shared_ptr<const void> message, const msgs::MessageType& type) {
   const std::size_t bytes = type.serialized_size(message.get());
   return impl_->record({topic, log_time, publish_time, nullptr, std::move(message), &type, bytes});
-}
-
-void RecorderThread::record_all(std::size_t topic, Time log_time, Time publish_time,
-                                std::shared_ptr<const void> message,
-                                const msgs::MessageType& type) {
-  const std::size_t bytes = type.serialized_size(message.get());
-  impl_->record_all({topic, log_time, publish_time, nullptr, std::move(message), &type, bytes});
 }
 
 void RecorderThread::trigger() {

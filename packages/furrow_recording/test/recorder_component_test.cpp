@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "../src/topic_list.hpp"
+#include "furrow_core/file.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
 #include "furrow_msgs/furrow_msgs.h"
@@ -103,6 +106,29 @@ TEST_F(RecorderComponentTest, RecordsEveryMessageOfATopicOfWhichOthersWantTheNew
   });
   EXPECT_EQ(run({.clock = graph::ClockMode::kLockstep}), "enough");
   EXPECT_EQ(heartbeats(), std::vector(kMessages, Time() + Duration::milliseconds(1)));
+}
+
+TEST_F(RecorderComponentTest, SameMessagesGiveTheSameFileHoweverLongASimulatedStepTook) {
+  auto& parameters = graph_.components[0].parameters;
+  parameters.push_back({.name = "wait_for_disk", .value = true});
+  parameters.push_back({.name = "flush_s", .value = 1.0});
+  int ticks = 0;
+  std::chrono::milliseconds step_takes{0};
+  add_source([&](Context& context, const auto& out) {
+    if (++ticks == 10) return context.request_stop("enough");
+    out.publish(PlannerHeartbeat::Message());
+    // As a step does that renders an image: longer than flush_s on the clock of the wall.
+    if (ticks == 5) std::this_thread::sleep_for(step_takes);
+  });
+  const auto record = [&](std::chrono::milliseconds pause) {
+    ticks = 0;
+    step_takes = pause;
+    std::filesystem::remove(recorded());
+    EXPECT_EQ(run({.clock = graph::ClockMode::kLockstep}), "enough");
+    return read_file(recorded(), 1u << 20).value();
+  };
+  const std::string quick = record({});
+  EXPECT_TRUE(quick == record(std::chrono::milliseconds(1500)));
 }
 
 TEST_F(RecorderComponentTest, RecordsWhenAMessageCameHoweverLongItWaitedForAThread) {

@@ -35,7 +35,7 @@ class Gate {
 TEST(RecorderThread, WritesFromManyThreadsAndLosesNothing) {
   TestDisk disk;
   {
-    RecorderThread recorder({}, "run", disk.environment());
+    RecorderThread recorder({}, "run", RecorderClock::kReal, disk.environment());
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t) {
       threads.emplace_back([&recorder, t] {
@@ -69,7 +69,7 @@ TEST(RecorderThread, AFullQueueDropsAndCountsAndNeverBlocks) {
   RecorderParameters parameters;
   parameters.compression = "none";
   parameters.queue_mb = 40;
-  RecorderThread recorder(parameters, "run", environment);
+  RecorderThread recorder(parameters, "run", RecorderClock::kReal, environment);
   const auto topic = recorder.add_topic(topic_of("a"));
   int accepted = 0;
   for (int i = 0; i < 100; ++i) {
@@ -88,7 +88,7 @@ TEST(RecorderThread, SerializesMessagesOfComponents) {
   auto message = std::make_shared<std_msgs::msg::String>();
   message->data("hello");
   const auto& type = msgs::message_type<std_msgs::msg::String>();
-  RecorderThread recorder({}, "run", disk.environment());
+  RecorderThread recorder({}, "run", RecorderClock::kReal, disk.environment());
   const auto topic = recorder.add_topic(
       describe_topic("text", type.ros_name, {msgs::event_qos()}, SchemaStyle::kRos2msg));
   EXPECT_TRUE(recorder.record(topic, at_ms(1), at_ms(1), message, type));
@@ -112,14 +112,14 @@ TEST(RecorderThread, WaitsForRoomWhereEveryMessageCounts) {
   RecorderParameters parameters;
   parameters.queue_messages = 1;
   parameters.queue_mb = 1.0;
-  RecorderThread recorder(parameters, "run", disk.environment());
+  RecorderThread recorder(parameters, "run", RecorderClock::kSimulated, disk.environment());
   const auto topic = recorder.add_topic(
       describe_topic("text", type.ros_name, {msgs::event_qos()}, SchemaStyle::kRos2msg));
   // The second is larger than the whole queue.
   for (int i = 0; i < 300; ++i) {
     auto message = std::make_shared<std_msgs::msg::String>();
     message->data(std::string(i == 1 ? 2'000'000 : 100, 'x'));
-    recorder.record_all(topic, at_ms(i), at_ms(i), message, type);
+    EXPECT_TRUE(recorder.record(topic, at_ms(i), at_ms(i), message, type));
   }
   EXPECT_TRUE(recorder.stop().ok());
   EXPECT_EQ(recorder.status().messages, 300U);
@@ -131,7 +131,7 @@ TEST(RecorderThread, CommandsComeInOrderWithMessages) {
   TestDisk disk;
   RecorderParameters parameters;
   parameters.pre_trigger_s = 1.0;
-  RecorderThread recorder(parameters, "run", disk.environment());
+  RecorderThread recorder(parameters, "run", RecorderClock::kReal, disk.environment());
   const auto a = recorder.add_topic(topic_of("a"));
   (void)recorder.record(a, at_ms(1), {}, payload_of(1, 1));
   recorder.trigger();

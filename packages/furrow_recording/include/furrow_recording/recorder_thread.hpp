@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -9,11 +10,21 @@
 
 namespace furrow::recording {
 
+/// The clock of the messages' times.
+enum class RecorderClock : std::uint8_t {
+  /// A chunk is written after flush_s, also when no message follows. A full queue drops messages.
+  kReal,
+  /// Chunks end by the messages alone, so that the same messages give the same bytes however long
+  /// a simulated step takes. A full queue makes record() wait, and nothing is lost.
+  kSimulated,
+};
+
 /// A Recorder on a dedicated thread, behind a queue bounded in bytes and messages. Functions are
-/// thread-safe. record() never copies, serializes or waits; only record_all() waits for the disk.
+/// thread-safe. record() neither copies nor serializes, and waits in simulated time only.
 class RecorderThread {
  public:
   RecorderThread(const RecorderParameters& parameters, std::filesystem::path stem,
+                 RecorderClock clock = RecorderClock::kReal,
                  RecorderEnvironment environment = RecorderEnvironment::of_this_machine());
   /// Writes the queue and closes the file.
   ~RecorderThread();
@@ -27,10 +38,6 @@ class RecorderThread {
   /// not change any more.
   bool record(std::size_t topic, Time log_time, Time publish_time,
               std::shared_ptr<const void> message, const msgs::MessageType& type);
-
-  /// As record(), but waits for room in a full queue: for runs in simulated time.
-  void record_all(std::size_t topic, Time log_time, Time publish_time,
-                  std::shared_ptr<const void> message, const msgs::MessageType& type);
 
   void trigger();
   void pause();
