@@ -3,12 +3,18 @@ that simulated time gives the same lines."""
 
 import os
 import re
+import signal
 import subprocess
+import time
 import unittest
 
 from furrow_case import FurrowCase, domain, furrow_program
 
-SHORT = ("--length", "1", "--seed", "3")
+# Without rendering: most lines do not depend on images.
+SHORT = ("--graph", "weeding_true_detections", "--length", "0.5", "--seed", "3")
+# Rendered, but two images only.
+RENDERED = ("--length", "0.5", "--seed", "3", "--set", "camera.camera_rate_hz=0.2")
+LONG = ("--graph", "weeding_true_detections", "--length", "20")
 # Slower than the deadline of the axis drivers: the tools enter their safe state.
 SLOW_HEARTBEAT = ("--set", "planner.heartbeat_rate_hz=10")
 LINE = re.compile(r" *\d+\.\d{3} s (DEBUG|INFO |WARN |ERROR|FATAL) ([\w.-]+): \S.*")
@@ -19,32 +25,38 @@ class Log(FurrowCase):
         return (out or self.out).joinpath("run.log").read_text()
 
     def test_every_line_has_time_level_component_and_text(self):
-        self.run_graph(*SHORT, "--log-level", "debug")
+        self.run_graph(*SHORT, *SLOW_HEARTBEAT, "--log-level", "debug")
         lines = self.log().splitlines()
-        self.assertTrue(lines)
+        self.assertGreater(len(lines), 2)
         for line in lines:
             self.assertRegex(line, LINE)
-        self.assertIn("furrow: run of graph 'weeding' starts, seed 3", self.log())
+        self.assertIn("furrow: run of graph 'weeding_true_detections' starts, seed 3",
+                      self.log())
 
     def test_simulated_time_gives_the_same_lines_on_any_number_of_threads(self):
         logs = []
         for threads in (1, 3):
             out = self.folder / f"threads{threads}"
-            self.run_graph(*SHORT, "--log-level", "debug", "--threads", threads, out=out)
+            self.run_graph(*SHORT, *SLOW_HEARTBEAT, "--log-level", "debug", "--threads", threads,
+                           out=out)
             logs.append(self.log(out))
+        self.assertIn("ERROR driver_axis_1", logs[0])
         self.assertEqual(logs[0], logs[1])
 
     def test_the_console_has_the_lines_of_the_file(self):
-        done = self.furrow("run", "--no-dds", "--clock", "lockstep", "--out", self.out, *SHORT)
+        done = self.furrow("run", "--no-dds", "--clock", "lockstep", "--out", self.out, *SHORT,
+                           *SLOW_HEARTBEAT)
         self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(len(self.log().splitlines()), 2)
         for line in self.log().splitlines():
             self.assertIn(line, done.stderr)
 
     def test_levels_are_set_for_all_and_for_one_component(self):
-        self.run_graph(*SHORT, "--log-level", "fatal")
+        self.run_graph(*SHORT, *SLOW_HEARTBEAT, "--log-level", "fatal")
         self.assertEqual(self.log(), "")
         one = self.folder / "one"
-        self.run_graph(*SHORT, "--log-level", "fatal", "--log-level", "furrow=info", out=one)
+        self.run_graph(*SHORT, *SLOW_HEARTBEAT, "--log-level", "fatal", "--log-level",
+                       "furrow=info", out=one)
         components = {LINE.fullmatch(line)[2] for line in self.log(one).splitlines()}
         self.assertEqual(components, {"furrow"})
 
@@ -71,8 +83,9 @@ class Log(FurrowCase):
         self.assert_refused(["run", "--no-dds", "--out", "/proc/nothing/here"], "--out")
 
     def test_a_warning_is_written_once_and_its_repetitions_are_counted(self):
-        self.run_graph(*SHORT, "--set", "perception.min_score=1.0",
-                       "--set", "tracker.max_empty_views=2")
+        field = self.folder / "beside_the_images.csv"
+        field.write_text("# length_m: 0.5\nkind,x_m,y_m\nweed,0.25,5.0\n")
+        self.run_graph(*SHORT, "--field", field, "--set", "tracker.max_empty_views=2")
         lines = [line for line in self.log().splitlines() if " tracker: " in line]
         self.assertRegex(lines[0], r"WARN  tracker: no plant in 2 images in a row; nothing is "
                                    r"tracked$")
@@ -95,11 +108,12 @@ class Log(FurrowCase):
     def test_the_same_seed_gives_the_same_recording_with_the_log_as_rosout(self):
         days = []
         for name in ("one", "two"):
-            self.furrow("run", "--no-dds", "--clock", "lockstep", *SHORT, *SLOW_HEARTBEAT,
-                        "--set", "camera.render=false",
+            self.furrow("run", "--no-dds", "--clock", "lockstep", *RENDERED, *SLOW_HEARTBEAT,
                         "--out", self.folder / name, "--record", self.folder / f"{name}_day")
             file = self.folder / f"{name}_day_0.mcap"
-            self.assertGreater(self.bag_info(file)["counts"].get("rosout", 0), 0)
+            counts = self.bag_info(file)["counts"]
+            self.assertGreater(counts.get("rosout", 0), 0)
+            self.assertGreater(counts.get("camera/image", 0), 1)
             (self.folder / "info.json").unlink()
             days.append(file.read_bytes())
         self.assertEqual(days[0], days[1])
@@ -110,7 +124,7 @@ class Log(FurrowCase):
         self.addCleanup(lambda: (os.environ.clear(), os.environ.update(saved)))
         os.environ.update(environment)
         done = self.furrow("run", "--clock", "lockstep", "--domain", domain(), "--out", self.out,
-                           *SHORT, *arguments)
+                           *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         for line in done.stderr.splitlines():
             if "opencv" in line or "fastdds" in line:
@@ -118,37 +132,46 @@ class Log(FurrowCase):
         return self.log()
 
     def test_texts_of_opencv_are_lines(self):
-        log = self.run_with({"OPENCV_LOG_LEVEL": "DEBUG"}, "--log-level", "opencv=debug")
+        log = self.run_with({"OPENCV_LOG_LEVEL": "DEBUG"}, *RENDERED, "--log-level",
+                            "opencv=debug")
         self.assertRegex(log, r"s (DEBUG|INFO ) opencv: \S")
 
     def test_texts_of_fast_dds_are_lines(self):
         profile = self.folder / "profile.xml"
         profile.write_text("<dds><no_such_element/></dds>")
-        log = self.run_with({"FASTRTPS_DEFAULT_PROFILES_FILE": str(profile)})
+        log = self.run_with({"FASTRTPS_DEFAULT_PROFILES_FILE": str(profile)}, *SHORT)
         self.assertRegex(log, r"s ERROR fastdds: \S")
+
+    def start(self, *arguments):
+        """A run in real time, which the test interrupts as soon as it has seen what it waits for."""
+        run = subprocess.Popen(
+            [furrow_program(), *map(str, arguments), "--out", str(self.out), *LONG,
+             *SLOW_HEARTBEAT],
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL)
+        self.addCleanup(run.wait, 60)
+        self.addCleanup(run.send_signal, signal.SIGINT)
+        return run
 
     def test_an_external_reader_gets_the_log_on_rosout(self):
         number = domain()
-        reader = subprocess.Popen(
-            [furrow_program(), "topic", "echo", "rosout", "--domain", str(number), "--count", "1",
-             "--wait", "60"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(reader.wait)
-        self.addCleanup(reader.kill)
-        self.furrow("run", "--clock", "real", "--domain", number, "--out", self.out, "--length", "1",
-                    *SLOW_HEARTBEAT)
-        text, errors = reader.communicate(timeout=60)
-        self.assertIn("msg:", text, errors)
+        self.start("run", "--clock", "real", "--domain", number)
+        done = self.furrow("topic", "echo", "rosout", "--domain", number, "--count", "1", "--wait",
+                           "60")
+        self.assertIn("msg:", done.stdout, done.stderr)
 
     def test_each_process_and_the_supervisor_have_a_log(self):
-        self.furrow("up", "--domain", domain(), "--out", self.out, "--length", "1",
-                    *SLOW_HEARTBEAT)
-        logs = sorted(path.name for path in self.out.glob("run*.log"))
-        self.assertIn("run_supervisor.log", logs)
-        self.assertGreater(len(logs), 2)
-        self.assertIn("WARN  driver_axis_1: waits for: heartbeat",
-                      (self.out / "run_driver_axis_1.log").read_text())
-        self.assertIn(" supervisor: driver_axis_1: ",
-                      (self.out / "run_supervisor.log").read_text())
+        run = self.start("up", "--domain", domain())
+        self.wait_for_line(run, "run_driver_axis_1.log",
+                           "ERROR driver_axis_1: safe state entered: peer_lost")
+        self.wait_for_line(run, "run_supervisor.log", " supervisor: driver_axis_1: ")
+        self.assertGreater(len(list(self.out.glob("run*.log"))), 2)
+
+    def wait_for_line(self, run, name, part):
+        file = self.out / name
+        while not (file.exists() and part in file.read_text()):
+            self.assertIsNone(run.poll(), f"the run ended without {part!r} in {name}")
+            time.sleep(0.05)
 
 
 if __name__ == "__main__":
