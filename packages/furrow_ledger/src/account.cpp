@@ -107,6 +107,27 @@ class Accountant {
     best_m = distance_m;
   }
 
+  /// Of the tracks that a spray names, the one nearest to a plant that it stands for. The order of
+  /// the names has no meaning. @pre the spray names one.
+  [[nodiscard]] std::size_t nearest_named(const Spray& spray, std::size_t plant) const {
+    const auto distance_m = [&](std::size_t track) {
+      return (tracks_[track].p_F_m - plants_[plant].p_F_m).norm();
+    };
+    std::size_t nearest = kNoIndex;
+    for (const std::int64_t id : spray.track_ids) {
+      const auto track = track_of_id_.find(id);
+      if (track == track_of_id_.end() || association_.plant_of_track[track->second] != plant) {
+        continue;
+      }
+      const std::size_t t = track->second;
+      if (nearest == kNoIndex ||
+          std::pair(distance_m(t), t) < std::pair(distance_m(nearest), nearest)) {
+        nearest = t;
+      }
+    }
+    return nearest;
+  }
+
   void apply_sprays(const PointGrid<Eigen::Vector2d>& grid) {
     sprayed_.resize(plants_.size());
     for (std::size_t s = 0; s < sprays_.size(); ++s) {
@@ -132,7 +153,8 @@ class Accountant {
         const auto track = track_of_id_.find(id);
         if (track == track_of_id_.end()) continue;
         const std::size_t plant = association_.plant_of_track[track->second];
-        if (plant != kNoIndex) aim_at(plant, spray.aim_F_m - tracks_[track->second].p_F_m);
+        if (plant == kNoIndex) continue;
+        aim_at(plant, spray.aim_F_m - tracks_[nearest_named(spray, plant)].p_F_m);
       }
       if (spray.track_ids.empty() && spray.commanded) {
         grid.for_each_within(

@@ -102,6 +102,20 @@ TEST(Account, EachCauseHasItsCase) {
   }
 }
 
+TEST(Account, PlacementDoesNotDependOnTheOrderOfTheNamedTracks) {
+  // Both tracks stand for the plant; 8 is a duplicate. The spray lies 20 mm from the plant. It was
+  // meant to lie 17 mm from track 7.
+  for (const std::vector<std::int64_t>& names : {std::vector<std::int64_t>{7, 8}, {8, 7}}) {
+    RunRecord record;
+    record.tracks = {track(7, 1.001, 0.0), track(8, 1.03, 0.0)};
+    record.sprays = {spray(1.02, 0.0, names, 1.018, 0.0)};
+    const auto ledger = account(field_of({plant(1, PlantKind::kWeed, 1.0, 0.0)}), record);
+    ASSERT_TRUE(ledger.ok());
+    ASSERT_EQ(ledger->placement_errors_mm.size(), 1U);
+    EXPECT_NEAR(ledger->placement_errors_mm[0], 3.0, 1e-9);
+  }
+}
+
 TEST(Account, TracksGoToPlantsOneToOneNearestFirst) {
   // Track 10 is near both plants; track 11 only near the first. Nearest pairs: 10 with 2.
   RunRecord record;

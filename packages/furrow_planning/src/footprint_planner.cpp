@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "passing_fire.hpp"
 
@@ -324,14 +325,13 @@ void FootprintPlanner::write_stop(const PlanningProblem& problem, std::size_t ax
   stop.first_target = static_cast<std::uint32_t>(plan.treated.size());
   stop.target_count = static_cast<std::uint32_t>(nodes.size());
   plan.routes[axis].push_back(stop);
-  const auto distance = [&](std::uint32_t k) {
+  // To the micrometre: the middle of a pair is equally far from both, and rounding must not decide.
+  const auto distance_um = [&](std::uint32_t k) {
     const Node& node = prepared_.nodes[k];
-    return (Eigen::Vector2d(node.x_m, node.y_m) - stop.aim_F).squaredNorm();
+    return std::llround(1e6 * (Eigen::Vector2d(node.x_m, node.y_m) - stop.aim_F).norm());
   };
   std::sort(nodes.begin(), nodes.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const double di = distance(i);
-    const double dj = distance(j);
-    return di != dj ? di < dj : i < j;
+    return std::pair(distance_um(i), i) < std::pair(distance_um(j), j);
   });
   for (const std::uint32_t k : nodes) {
     const Node& node = prepared_.nodes[k];
