@@ -178,6 +178,7 @@ class TrackerComponent final : public graph::Component {
       correction_.clear();
       empty_views_ = summary.empty_view ? empty_views_ + 1 : 0;
       if (summary.empty_view) context_.count("empty_views");
+      if (summary.repeated_view) context_.count("repeated_views");
     }
     report(summary);
     if (!parameters_.field.field_model_file.empty()) keep_deleted();

@@ -7,31 +7,21 @@
 #include <vector>
 
 #include "association.hpp"
-#include "furrow_core/error.hpp"
 #include "furrow_core/point_grid.hpp"
 #include "fusion.hpp"
+#include "viewpoint.hpp"
 
 namespace furrow::tracking {
 namespace {
 
 constexpr std::int32_t kNoTrack = SparseAssignment::kUnmatched;
 
-void check(const TrackerParameters& parameters) {
-  validate_parameters(parameters);
-  if (parameters.min_radius_m > parameters.max_radius_m) {
-    throw ConfigError("min_radius_m is greater than max_radius_m");
-  }
-  if (parameters.match_score > parameters.birth_score) {
-    throw ConfigError("match_score is greater than birth_score");
-  }
-}
-
 }  // namespace
 
 class Tracker::Impl {
  public:
   explicit Impl(TrackerParameters parameters)
-      : parameters_((check(parameters), std::move(parameters))),
+      : parameters_((parameters.check(), std::move(parameters))),
         association_(parameters_),
         row_prior_(parameters_.rows) {}
 
@@ -47,6 +37,7 @@ class Tracker::Impl {
   [[nodiscard]] ViewFault fault_of(const View& view) const;
   void prepare(const View& view, std::span<const Observation> observations, UpdateSummary& summary);
   void follow_pose(const View& view);
+  void refresh_matches(const View& view, UpdateSummary& summary);
   void fuse_matches(const View& view, UpdateSummary& summary);
   void begin_tracks(const View& view, UpdateSummary& summary);
   [[nodiscard]] bool repeats_a_plant(const PreparedObservation& observation) const;
@@ -67,6 +58,7 @@ class Tracker::Impl {
   std::uint64_t next_id_ = 1;
   bool started_ = false;
   Time newest_;
+  Viewpoint viewpoint_;
   std::vector<PreparedObservation> prepared_;
   std::vector<Eigen::Vector2d> observed_;  // positions of prepared_
   std::vector<std::int32_t> track_of_;     // of prepared_, index into tracks_
@@ -145,14 +137,19 @@ UpdateSummary Tracker::Impl::update(const View& view, std::span<const Observatio
   summary.empty_view = prepared_.empty();
   const auto matches = association_.match(view.stamp, prepared_, tracks_);
   track_of_.assign(matches.begin(), matches.end());
-  const std::size_t known = tracks_.size();
-  fuse_matches(view, summary);
-  begin_tracks(view, summary);
-  count_misses(view, known, summary);
-  merge_duplicates(view, summary);
-  end_passed(view, summary);
-  evict_farthest(view, summary);
-  apply_row_prior();
+  summary.repeated_view = viewpoint_.repeats(view, parameters_.repeat_distance_m);
+  if (summary.repeated_view) {
+    refresh_matches(view, summary);
+  } else {
+    const std::size_t known = tracks_.size();
+    fuse_matches(view, summary);
+    begin_tracks(view, summary);
+    count_misses(view, known, summary);
+    merge_duplicates(view, summary);
+    end_passed(view, summary);
+    evict_farthest(view, summary);
+    apply_row_prior();
+  }
   for (std::size_t o = 0; o < prepared_.size(); ++o) {
     if (track_of_[o] == kNoTrack) continue;
     const Track& track = tracks_[track_of_[o]];
@@ -169,6 +166,15 @@ void Tracker::Impl::follow_pose(const View& view) {
   for (Track& track : tracks_) {
     if (ahead_F.dot(track.p_F_m - p_FB) < -parameters_.follow_behind_m) continue;
     track.p_F_m = geometry::transform(view.correction, track.p_F_m);
+  }
+}
+
+void Tracker::Impl::refresh_matches(const View& view, UpdateSummary& summary) {
+  for (const std::int32_t t : track_of_) {
+    if (t == kNoTrack) continue;
+    tracks_[t].last_seen = view.stamp;
+    if (tracks_[t].confirmed) tracks_[t].state = TrackState::kConfirmed;
+    ++summary.matched;
   }
 }
 

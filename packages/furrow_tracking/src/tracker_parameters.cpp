@@ -1,12 +1,20 @@
+#include "furrow_core/error.hpp"
 #include "furrow_tracking/tracker.hpp"
 
 namespace furrow::tracking {
+
+void TrackerParameters::check() const {
+  validate_parameters(*this);
+  if (min_radius_m > max_radius_m) throw ConfigError("min_radius_m is greater than max_radius_m");
+  if (match_score > birth_score) throw ConfigError("match_score is greater than birth_score");
+}
 
 void TrackerParameters::visit(ParameterVisitor& v) {
   visit_association(v);
   visit_lifetime(v);
   visit_limits(v);
   visit_position(v);
+  visit_repeats(v);
   visit_class(v);
   visit_pose(v);
   rows.visit(v);
@@ -149,6 +157,16 @@ void TrackerParameters::visit_position(ParameterVisitor& v) {
        .min = 1.0,
        .max = 100.0},
       outlier_sigma);
+}
+
+void TrackerParameters::visit_repeats(ParameterVisitor& v) {
+  v.visit({.name = "repeat_distance_m",
+           .unit = "m",
+           .description = "a view from within this distance of the last one is no new evidence; 0: "
+                          "every view is",
+           .min = 0.0,
+           .max = 1.0},
+          repeat_distance_m);
 }
 
 void TrackerParameters::visit_class(ParameterVisitor& v) {

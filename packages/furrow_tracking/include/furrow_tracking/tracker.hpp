@@ -35,6 +35,7 @@ struct TrackerParameters {
 
   double position_floor_m = 0.0005;
   double drift_m_per_sqrt_s = 0.0005;
+  double repeat_distance_m = 0.0;
   double truncated_sigma_ratio = 0.5;
   double max_pose_sigma_m = 0.010;
   double outlier_sigma = 3.0;
@@ -48,12 +49,15 @@ struct TrackerParameters {
   RowPriorParameters rows;
 
   void visit(ParameterVisitor& v);
+  /// Throws ConfigError when a parameter is out of its range or contradicts another.
+  void check() const;
 
  private:
   void visit_association(ParameterVisitor& v);
   void visit_lifetime(ParameterVisitor& v);
   void visit_limits(ParameterVisitor& v);
   void visit_position(ParameterVisitor& v);
+  void visit_repeats(ParameterVisitor& v);
   void visit_class(ParameterVisitor& v);
   void visit_pose(ParameterVisitor& v);
 };
@@ -83,6 +87,7 @@ struct UpdateSummary {
   std::int32_t weak = 0;        ///< below match_score, or unmatched and below birth_score
   std::int32_t duplicates = 0;  ///< second observations of a plant already matched
   bool empty_view = false;      ///< no valid observation
+  bool repeated_view = false;   ///< from the viewpoint of the last view
 
   [[nodiscard]] bool ok() const { return fault == ViewFault::kNone && rejected + overflow == 0; }
 };
@@ -99,6 +104,10 @@ struct UpdateSummary {
 /// With `follow_pose` tracks move with the corrections of the pose (View::correction) until the
 /// robot has passed them by `follow_behind_m`. So a tool finds a plant that was seen from an
 /// earlier, wrong pose. Footprints used to compare masks are not moved.
+///
+/// A view from within `repeat_distance_m` of the last one repeats its errors, as of a robot that
+/// stands. It is evidence neither for nor against a plant. Matched tracks keep their state and are
+/// as fresh as the view. No track begins, is confirmed, or counts a miss.
 ///
 /// Cost: about linear in the plants in view; buffers are reused. Not thread-safe.
 class Tracker {
