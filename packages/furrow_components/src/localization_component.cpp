@@ -143,6 +143,10 @@ class Localization final : public graph::Component {
     if (outcome == localization::Outcome::kUsed) return;
     if (outcome == localization::Outcome::kIgnored) return;
     const std::string reason(localization::to_string(outcome));
+    if (outcome == localization::Outcome::kUsedLate) {
+      context_.count(sensor + reason);
+      return;
+    }
     context_.warn(sensor + reason, "a measurement of " + sensor.substr(0, sensor.size() - 1) +
                                        " was " + reason + "; it was not used");
   }
