@@ -5,23 +5,16 @@ effects of valve faults."""
 
 import collections
 import json
+import pathlib
+import sys
 import unittest
 
 from furrow_case import FurrowCase
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from measure_standstill import JOURNEYS, profile  # noqa: E402
+
 GRAPH = ("--graph", "weeding_true_detections", "--length", 6)
-STOP_S = 60
-# Speeds over time: the stop begins over the weeds, at some 3 m of the row.
-STOP = ([0, 9, 10, 10 + STOP_S, 11 + STOP_S, 300], [0.5, 0.5, 0.0, 0.0, 0.5, 0.5])
-ROLL_BACK = ([0, 9, 10, 12, 12.5, 14.5, 15, 20, 21, 300],
-             [0.5, 0.5, 0.0, 0.0, -0.12, -0.12, 0.0, 0.0, 0.5, 0.5])
-THREE_STOPS = ([0, 7, 8, 13, 14, 16, 17, 22, 23, 25, 26, 31, 32, 300],
-               [0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0.5])
-
-
-def profile(times_s, speeds_mps):
-    return ("--set", f"robot.profile_time_s={list(times_s)}",
-            "--set", f"robot.profile_speed_mps={list(speeds_mps)}")
 
 
 def reasons(rows):
@@ -34,30 +27,29 @@ class StandstillTest(FurrowCase):
         features = json.loads((out / "as_applied.geojson").read_text())["features"]
         return sorted(feature["properties"]["time_s"] for feature in features)
 
-    def compare(self, name, journey, standing):
-        """`standing`: stretches of time in which the robot stands or reverses."""
+    def compare(self, name):
         for seed in (1, 2):
             with self.subTest(journey=name, seed=seed):
                 straight = self.run_graph(*GRAPH, "--seed", seed, out=self.folder / f"s{seed}")
                 out = self.folder / f"{name}{seed}"
-                stopped = self.run_graph(*GRAPH, "--seed", seed, *profile(*journey), out=out)
+                stopped = self.run_graph(*GRAPH, "--seed", seed, *profile(name), out=out)
                 print(f"{name}, seed {seed}: loss {straight['loss_pct']:.1f} % without, "
                       f"{stopped['loss_pct']:.1f} % with it")
                 self.assertNotIn("Safe states", (out / "report.html").read_text())
                 self.assertLessEqual(stopped["loss_pct"], straight["loss_pct"] + 1.0 + 1e-9)
                 self.assertLessEqual(stopped["crops_hit"], straight["crops_hit"])
-                for from_s, to_s in standing:
+                for from_s, to_s in JOURNEYS[name][2]:
                     inside = [t for t in self.sprays_s(out) if from_s <= t <= to_s]
                     self.assertEqual(inside, [])
 
     def test_a_stop_of_a_minute(self):
-        self.compare("stop", STOP, [(10, 10 + STOP_S)])
+        self.compare("stop")
 
     def test_rolling_back_by_30_cm(self):
-        self.compare("roll", ROLL_BACK, [(10, 20)])
+        self.compare("roll")
 
     def test_three_stops(self):
-        self.compare("three", THREE_STOPS, [(8, 13), (17, 22), (26, 31)])
+        self.compare("three")
 
 
 class ValveFaultTest(FurrowCase):
