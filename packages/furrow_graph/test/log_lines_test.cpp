@@ -1,6 +1,6 @@
 // What components write to the log, and how it reaches readers in the process.
 
-#include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,23 +40,54 @@ void add_stepper(Registry& registry, const std::string& name, Step step) {
   registry.add(std::move(type));
 }
 
-/// The lines of a lock-step run of components whose classes are named like them.
-Texts lines_of(Registry& registry, const std::vector<std::string>& names, int threads = 1) {
+/// A component that takes the messages of a topic, if they are published.
+template <class Topic>
+void add_reader(Registry& registry, std::function<void(const typename Topic::Message&)> take) {
+  ComponentClass reader{.name = "reader"};
+  reader.description.input<Topic>(Need::kOptional);
+  reader.make = [take = std::move(take)](Context& context) {
+    context.input<Topic>([take](const auto& message) { take(*message); });
+    return std::make_unique<Component>();
+  };
+  registry.add(std::move(reader));
+}
+
+/// A log that keeps its lines, and runs that write to it.
+struct Logged {
+  explicit Logged(log::LogOptions options = {}) : log(std::move(options)) { log.add(sink); }
+
+  /// Runs components whose classes are named like them.
+  void run(Registry& registry, const std::vector<std::string>& names, RuntimeOptions options) {
+    GraphSpec graph;
+    for (const std::string& name : names) graph.components.push_back(spec(name, name));
+    options.log = &log;
+    Runtime runtime(graph, registry, options);
+    EXPECT_FALSE(runtime.run().failed);
+    status = runtime.status();
+  }
+
+  [[nodiscard]] Texts lines() {
+    log.flush();
+    return sink->texts;
+  }
+
+  std::shared_ptr<Memory> sink = std::make_shared<Memory>();
+  log::Log log;
+  std::vector<ComponentStatus> status;
+};
+
+log::LogOptions by_time() {
   log::LogOptions options;
   options.order = log::Order::kTime;
   options.levels.set("debug");
-  log::Log log(options);
-  const auto sink = std::make_shared<Memory>();
-  log.add(sink);
-  GraphSpec graph;
-  for (const std::string& name : names) graph.components.push_back(spec(name, name));
-  {
-    Runtime runtime(graph, registry,
-                    {.clock = ClockMode::kLockstep, .threads = threads, .log = &log});
-    EXPECT_FALSE(runtime.run().failed);
-  }
-  log.flush();
-  return sink->texts;
+  return options;
+}
+
+/// The lines of a lock-step run.
+Texts lines_of(Registry& registry, const std::vector<std::string>& names, int threads = 1) {
+  Logged logged(by_time());
+  logged.run(registry, names, {.clock = ClockMode::kLockstep, .threads = threads});
+  return logged.lines();
 }
 
 TEST(LogLines, HealthChangeIsOneLine) {
@@ -79,13 +110,10 @@ TEST(LogLines, WarningIsCountedToo) {
     context.warn("bad_tracks", "position of track 3 is not finite; it was not planned for");
     if (count == 2) context.request_stop("enough");
   });
-  log::Log log;
-  GraphSpec graph;
-  graph.components = {spec("planner", "planner")};
-  Runtime runtime(graph, registry, {.clock = ClockMode::kLockstep, .threads = 1, .log = &log});
-  EXPECT_FALSE(runtime.run().failed);
-  EXPECT_EQ(runtime.status()[0].health.counters.at("bad_tracks"), 2);
-  EXPECT_EQ(log.counters().suppressed, 1u);
+  Logged logged;
+  logged.run(registry, {"planner"}, {.clock = ClockMode::kLockstep, .threads = 1});
+  EXPECT_EQ(logged.status[0].health.counters.at("bad_tracks"), 2);
+  EXPECT_EQ(logged.log.counters().suppressed, 1u);
 }
 
 TEST(LogLines, DroppedMessagesAreLogged) {
@@ -140,13 +168,7 @@ TEST(LogLines, ReaderInTheProcessGetsThemOnRosout) {
     if (count == 30) context.request_stop("enough");
   });
   std::vector<rcl_interfaces::msg::Log> seen;
-  ComponentClass reader{.name = "reader"};
-  reader.description.input<msgs::topics::Rosout>(Need::kOptional);
-  reader.make = [&seen](Context& context) {
-    context.input<msgs::topics::Rosout>([&seen](const auto& message) { seen.push_back(*message); });
-    return std::make_unique<Component>();
-  };
-  registry.add(std::move(reader));
+  add_reader<msgs::topics::Rosout>(registry, [&](const auto& line) { seen.push_back(line); });
   (void)lines_of(registry, {"axis", "reader"});
   ASSERT_FALSE(seen.empty());
   EXPECT_EQ(seen[0].name(), "axis");
@@ -156,35 +178,21 @@ TEST(LogLines, ReaderInTheProcessGetsThemOnRosout) {
 }
 
 TEST(LogLines, ComponentsGetNoTextOfALibraryInLockstep) {
-  log::LogOptions options;
-  options.order = log::Order::kTime;
-  log::Log log(options);
-  const auto sink = std::make_shared<Memory>();
-  log.add(sink);
+  Logged logged(by_time());
   Registry registry;
-  add_stepper(registry, "axis", [&log](Context& context, int count) {
-    if (count == 1) log.write_foreign(log::Level::kError, "opencv", "bad image");
+  add_stepper(registry, "axis", [&logged](Context& context, int count) {
+    if (count == 1) logged.log.write_foreign(log::Level::kError, "opencv", "bad image");
     if (count == 2) context.log(log::Level::kInfo, "own");
     if (count == 3) context.log(log::Level::kInfo, "later");
     if (count == 5) context.request_stop("enough");
   });
   Texts seen;
-  ComponentClass reader{.name = "reader"};
-  reader.description.input<msgs::topics::Rosout>(Need::kOptional);
-  reader.make = [&seen](Context& context) {
-    context.input<msgs::topics::Rosout>(
-        [&seen](const auto& message) { seen.push_back(message->msg()); });
-    return std::make_unique<Component>();
-  };
-  registry.add(std::move(reader));
-  GraphSpec graph;
-  graph.components = {spec("axis", "axis"), spec("reader", "reader")};
-  Runtime runtime(graph, registry, {.clock = ClockMode::kLockstep, .threads = 1, .log = &log});
-  EXPECT_FALSE(runtime.run().failed);
+  add_reader<msgs::topics::Rosout>(registry, [&](const auto& line) { seen.push_back(line.msg()); });
+  logged.run(registry, {"axis", "reader"}, {.clock = ClockMode::kLockstep, .threads = 1});
   EXPECT_EQ(seen, (Texts{"own"}));
-  log.flush();
-  ASSERT_EQ(sink->texts.size(), 3u);
-  EXPECT_EQ(sink->texts[0], "0 ms error opencv: bad image");
+  const Texts lines = logged.lines();
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0], "0 ms error opencv: bad image");
 }
 
 TEST(LogLines, FaultsOfTheTransportAreWarnings) {
@@ -192,35 +200,16 @@ TEST(LogLines, FaultsOfTheTransportAreWarnings) {
   add_stepper(registry, "axis", [](Context& context, int count) {
     if (count == 120) context.request_stop("enough");
   });
-  registry.add([] {
-    ComponentClass reader{.name = "reader"};
-    reader.description.input<msgs::topics::Diagnostics>(Need::kOptional);
-    reader.make = [](Context& context) {
-      context.input<msgs::topics::Diagnostics>([](const auto&) {});
-      return std::make_unique<Component>();
-    };
-    return reader;
-  }());
-  log::Log log;
-  const auto sink = std::make_shared<Memory>();
-  log.add(sink);
-  GraphSpec graph;
-  graph.components = {spec("axis", "axis"), spec("reader", "reader")};
-  Runtime runtime(graph, registry,
-                  {.clock = ClockMode::kReal,
-                   .threads = 1,
-                   .transport_health =
-                       [] {
-                         return Health{.level = HealthLevel::kWarn,
-                                       .message = "deadline_missed/planner/plan 1",
-                                       .counters = {}};
-                       },
-                   .log = &log});
-  EXPECT_FALSE(runtime.run().failed);
-  log.flush();
-  ASSERT_FALSE(sink->texts.empty());
-  EXPECT_TRUE(sink->texts[0].ends_with("warn transport: deadline_missed/planner/plan 1"))
-      << sink->texts[0];
+  add_reader<msgs::topics::Diagnostics>(registry, [](const auto&) {});
+  const auto fault = [] {
+    return Health{HealthLevel::kWarn, "deadline_missed/planner/plan 1", {}};
+  };
+  Logged logged;
+  logged.run(registry, {"axis", "reader"},
+             {.clock = ClockMode::kReal, .threads = 1, .transport_health = fault});
+  const Texts lines = logged.lines();
+  ASSERT_FALSE(lines.empty());
+  EXPECT_TRUE(lines[0].ends_with("warn transport: deadline_missed/planner/plan 1")) << lines[0];
 }
 
 }  // namespace
