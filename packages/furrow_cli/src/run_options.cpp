@@ -31,7 +31,7 @@ void add_run_options(Command command, launch::RunOptions& options) {
   command.option("--record", options.record,
                  "record the topics to PATH_0.mcap, PATH_1.mcap, ... (parameters of recorder)");
   command.option("--recording", options.recordings,
-                 "play camera and odometry from these MCAP files in place of the simulator "
+                 "play camera and odometry from these recordings in place of the simulator "
                  "(parameters of playback)");
   command.option("--log-level", options.log_levels,
                  "LEVEL or COMPONENT=LEVEL: the least level to log, of debug, info, warn, error, "

@@ -74,35 +74,59 @@ def connection(number, topic, kind, definition, **more):
     return record(header[4:], op=b"\x07", conn=u32(number), topic=topic)
 
 
+def bag_chunk(at, content, index, compression):
+    """A chunk with its indexes, and the record that describes it at the end of the file."""
+    packed = bz2.compress(content) if compression == b"bz2" else content
+    body = record(packed, op=b"\x05", compression=compression, size=u32(len(content)))
+    counts = b""
+    for number, entries in index.items():
+        counts += u32(number) + u32(len(entries))
+        body += record(b"".join(time + u32(offset) for time, offset in entries), op=b"\x04",
+                       ver=u32(1), conn=u32(number), count=u32(len(entries)))
+    times = [time for entries in index.values() for time, _ in entries]
+    info = record(counts, op=b"\x06", ver=u32(1), chunk_pos=struct.pack("<Q", at),
+                  start_time=min(times, key=seconds_first), end_time=max(times, key=seconds_first),
+                  count=u32(len(index)))
+    return body, info
+
+
+def seconds_first(time):
+    return struct.unpack("<II", time)
+
+
+def bag(connections, messages, chunk_bytes, compression, closed=True):
+    """A bag of `connections`, records by number, and `messages`: number, time and data."""
+    start = b"#ROSBAG V2.0\n"
+
+    def bag_header(position, chunks):
+        # Without the usual padding to 4096 bytes, which no reader needs.
+        return record(b"", op=b"\x03", index_pos=struct.pack("<Q", position),
+                      conn_count=u32(len(connections)), chunk_count=u32(chunks))
+    first = len(start) + len(bag_header(0, 0))
+    body, infos, chunks = b"", b"", 0
+    content, index = b"".join(connections.values()), {}
+    for i, (number, time, data) in enumerate(messages):
+        index.setdefault(number, []).append((time, len(content)))
+        content += record(data, op=b"\x02", conn=u32(number), time=time)
+        if len(content) >= chunk_bytes or i + 1 == len(messages):
+            chunk, info = bag_chunk(first + len(body), content, index, compression)
+            body, infos, chunks = body + chunk, infos + info, chunks + 1
+            content, index = b"", {}
+    if not closed:
+        return start + bag_header(0, chunks) + body
+    return (start + bag_header(first + len(body), chunks) + body + b"".join(connections.values()) +
+            infos)
+
+
 def bag_seed(compression, closed):
     text = struct.pack("<I", 2) + b"hi"
     imu = (struct.pack("<IIII", 1, 2, 3, 1) + b"f" + bytes(72) + u32(1) + bytes(24) + u32(1) +
            u32(1) + b"n" + b"\x01" + struct.pack("<ii", -1, 5))
-    connections = (connection(0, b"/s", b"std_msgs/String", "string data\n", latching=b"1") +
-                   connection(1, b"/imu", b"p/Imu", IMU))
-    chunk, index = connections, {0: b"", 1: b""}
-    for i, (number, data) in enumerate([(0, text), (1, imu), (0, text)]):
-        time = struct.pack("<II", 10 - i, 5)
-        index[number] += time + u32(len(chunk))
-        chunk += record(data, op=b"\x02", conn=u32(number), time=time)
-    packed = bz2.compress(chunk) if compression == b"bz2" else chunk
-    start = b"#ROSBAG V2.0\n"
-    body = record(packed, op=b"\x05", compression=compression, size=u32(len(chunk)))
-    for number, entries in index.items():
-        body += record(entries, op=b"\x04", ver=u32(1), conn=u32(number),
-                       count=u32(len(entries) // 12))
-
-    def bag_header(position):
-        # Without the usual padding to 4096 bytes, which no reader needs.
-        return record(b"", op=b"\x03", index_pos=struct.pack("<Q", position), conn_count=u32(2),
-                      chunk_count=u32(1))
-    chunk_at = len(start) + len(bag_header(0))
-    info = record(u32(0) + u32(2) + u32(1) + u32(1), op=b"\x06", ver=u32(1),
-                  chunk_pos=struct.pack("<Q", chunk_at), start_time=struct.pack("<II", 8, 5),
-                  end_time=struct.pack("<II", 10, 5), count=u32(2))
-    if not closed:
-        return start + bag_header(0) + body
-    return start + bag_header(chunk_at + len(body)) + body + connections + info
+    connections = {0: connection(0, b"/s", b"std_msgs/String", "string data\n", latching=b"1"),
+                   1: connection(1, b"/imu", b"p/Imu", IMU)}
+    messages = [(number, struct.pack("<II", 10 - i, 5), data)
+                for i, (number, data) in enumerate([(0, text), (1, imu), (0, text)])]
+    return bag(connections, messages, 1 << 20, compression, closed)
 
 
 def db3_seed(definitions):
