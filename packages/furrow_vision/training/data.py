@@ -79,7 +79,13 @@ class CocoSet:
             self._read(pathlib.Path(file))
 
     def _read(self, file):
-        content = json.loads(file.read_text())
+        if not file.is_file():
+            raise SystemExit(f"{file}: missing; furrow dataset convert IN OUT makes train.json, "
+                             "validation.json and evaluation.json")
+        try:
+            content = json.loads(file.read_text())
+        except ValueError as error:
+            raise SystemExit(f"{file}: not JSON: {error}") from None
         categories = {c["id"]: c for c in content["categories"]}
         ordered = sorted(categories.values(),
                          key=lambda c: (c.get("supercategory") != "crop", c["id"]))
@@ -90,7 +96,9 @@ class CocoSet:
         for annotation in content["annotations"]:
             name = categories[annotation["category_id"]]["name"]
             if name not in index:
-                raise SystemExit(f"{file}: category '{name}' is not one of the model's classes")
+                raise SystemExit(f"{file}: category '{name}' is not one of the model's classes "
+                                 f"({', '.join(index)}); adapt_classes.py makes weights with the "
+                                 "classes of this set, to be given by --start")
             stem = stem_of(annotation, categories[annotation["category_id"]])
             by_image.setdefault(annotation["image_id"], []).append((index[name], stem, annotation))
         self.items += [(file.parent / image["file_name"], file, by_image.get(image["id"], []))

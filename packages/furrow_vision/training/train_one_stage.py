@@ -97,9 +97,8 @@ def main():
     model = one_stage.OneStage(len(train.classes), arguments.width).to(device)
     if checkpoint:
         model.load_state_dict(checkpoint["model"])
-    # The mean over the last two hundred steps is what is kept: it is steadier than any one of them.
-    average = torch.optim.swa_utils.AveragedModel(
-        model, avg_fn=lambda mean, new, _: 0.995 * mean + 0.005 * new, use_buffers=True)
+    # A mean over at most the last two hundred steps is kept: it is steadier than any one of them.
+    average = torch.optim.swa_utils.AveragedModel(model, avg_fn=training_run.average_of, use_buffers=True)
     weights = training_run.class_weights(train).to(device)
     samples = training_run.Samples(train, arguments.size, arguments.seed, make_sample,
                                    arguments.randomise, arguments.painted)

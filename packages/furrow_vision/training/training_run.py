@@ -16,6 +16,10 @@ import domain_randomisation
 import painted_plants
 
 
+# Ground resolution of `furrow dataset render`.
+RENDERED_MM_PER_PX = 1.15
+
+
 def parser(description, batch, size, rate):
     """The options of both; the caller adds its own."""
     options = argparse.ArgumentParser(description=description)
@@ -30,7 +34,9 @@ def parser(description, batch, size, rate):
     options.add_argument("--rate", type=float, default=rate, help="of learning, at its highest")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--threads", type=int, default=2)
-    options.add_argument("--resolution", type=float, default=1.15, help="mm per px of the images")
+    options.add_argument("--resolution", type=float,
+                         help="mm per px of the images; default: that of the model file beside --start, "
+                              f"without --start {RENDERED_MM_PER_PX}, which is that of rendered sets")
     options.add_argument("--randomise", type=float, default=0.0, metavar="SHARE",
                          help="share of the crops that domain_randomisation.py changes, also in scale "
                               "and direction")
@@ -39,8 +45,41 @@ def parser(description, batch, size, rate):
     return options
 
 
+def ground_resolution(given, start):
+    """mm per px of the training images: as given, else that of the model file beside the start."""
+    if given is not None:
+        if not given > 0:
+            raise SystemExit(f"--resolution {given}: must be above 0 mm per px")
+        return given
+    if start is None:
+        return RENDERED_MM_PER_PX
+    key = "ground_resolution_mm_per_px:"
+    for file in sorted(start.parent.glob("*.yaml")):
+        lines = [line for line in file.read_text().splitlines() if line.startswith(key)]
+        if lines and file.stem == start.stem:
+            return float(lines[0].removeprefix(key))
+    raise SystemExit(f"{start}: no {start.stem}.yaml with {key[:-1]} beside it; "
+                     "give the resolution of the training images by --resolution")
+
+
+def average_decay(updates):
+    """Share of the average that an update keeps: .995 in the long run, less at first. A mean of
+    fixed decay would keep most of the starting weights in a training of few steps."""
+    updates = float(updates)
+    return min(0.995, (1.0 + updates) / (10.0 + updates))
+
+
+def average_of(mean, new, updates):
+    """The average of torch's AveragedModel after one more update."""
+    keep = average_decay(updates)
+    # Counters of batches are integers.
+    return (keep * mean + (1.0 - keep) * new).to(mean.dtype)
+
+
 def prepare(arguments):
-    """Sets seeds and threads, makes the folder; returns the device."""
+    """Sets seeds, threads and the resolution, makes the folder; returns the device."""
+    arguments.resolution = ground_resolution(arguments.resolution, arguments.start)
+    print(f"training images are taken as having {arguments.resolution:g} mm per px", flush=True)
     torch.manual_seed(arguments.seed)
     torch.set_num_threads(arguments.threads)
     cv2.setNumThreads(1)
@@ -105,15 +144,23 @@ def to_tensor(bgr):
 
 
 def class_weights(coco, limit=200):
-    """Inverse square root of each class's pixels, so that small weeds count beside large crops."""
-    pixels = np.ones(len(coco.classes))
+    """Inverse square root of each class's pixels, so that small weeds count beside large crops. The
+    mean is 1 over the classes that occur. One that does not occur has 1: it must not set the scale."""
+    pixels = np.zeros(len(coco.classes))
     for i in range(0, len(coco), max(len(coco) // limit, 1)):
         _, ids, plants = coco.load(i)
         counts = np.bincount(ids[ids >= 0], minlength=len(plants))
         for (class_index, _, _), count in zip(plants, counts):
             pixels[class_index] += count
-    weights = 1 / np.sqrt(pixels)
-    return torch.tensor(weights / weights.mean(), dtype=torch.float32)
+    weights, seen = np.ones(len(pixels)), pixels > 0
+    if not seen.any():
+        raise SystemExit("the training images show no plant of any class")
+    weights[seen] = 1 / np.sqrt(pixels[seen])
+    weights[seen] /= weights[seen].mean()
+    absent = [name for (name, _), there in zip(coco.classes, seen) if not there]
+    if absent:
+        print(f"classes without a pixel in training: {', '.join(absent)}", flush=True)
+    return torch.tensor(weights, dtype=torch.float32)
 
 
 class Checkpoint:
@@ -152,6 +199,10 @@ class Progress:
         self.highest_rate, self.minutes_at_most = arguments.rate, arguments.minutes
         self.steps_at_most = arguments.epochs * steps_per_epoch
         self.start, self.steps = time.time(), 0
+
+        if self.steps_at_most < self.WARM_UP_STEPS:
+            print(f"warning: {arguments.epochs} epochs are {self.steps_at_most} steps; below "
+                  f"{self.WARM_UP_STEPS} the rate does not reach --rate: give more --epochs", flush=True)
 
     def minutes(self):
         return (time.time() - self.start) / 60
