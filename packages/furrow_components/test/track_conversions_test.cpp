@@ -120,7 +120,7 @@ std::vector<tracking::Track> tracks() {
     tracks.push_back(track(i + 1, 0.2 * static_cast<double>(i), 0.25, 0.9));
   }
   tracks.push_back(track(7, 0.5, -0.3, 0.1));
-  tracks.back().species_votes = {0.0F, 2.0F};
+  tracks.back().species_probability = {0.0F, 0.9F};
   tracks.push_back(track(8, 0.6, -0.2, 0.1));
   tracks.push_back(track(9, -0.1, 0.0, 0.1));  // before the field
   tracks.push_back(track(10, 5.1, 0.0, 0.1));  // beyond it

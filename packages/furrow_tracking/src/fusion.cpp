@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "species_fusion.hpp"
+
 namespace furrow::tracking {
 namespace {
 
 constexpr double kMaxPosition_m = 1e7;
 constexpr double kMaxRadius_m = 10.0;
-constexpr std::size_t kMaxSpecies = 1024;
 
 bool within(double value, double low, double high) {
   return value >= low && value <= high;
@@ -51,11 +52,6 @@ void fuse_size(Track& track, const Observation& seen, double memory_views) {
   if (!seen.footprint.empty()) track.footprint = seen.footprint;
 }
 
-void add_votes(std::vector<float>& votes, const std::vector<float>& more) {
-  if (votes.size() < more.size()) votes.resize(more.size(), 0.0F);
-  for (std::size_t i = 0; i < more.size(); ++i) votes[i] += more[i];
-}
-
 }  // namespace
 
 void set_class(Track& track, double prior_log_odds, double bound) {
@@ -74,10 +70,8 @@ bool is_valid(const Observation& o) {
   const bool plant_class = within(o.class_probability[0], 0.0, 1e300) &&
                            within(o.class_probability[1], 0.0, 1e300) &&
                            o.class_probability[0] + o.class_probability[1] > 0.0;
-  const bool species = o.species_probability.size() <= kMaxSpecies &&
-                       std::all_of(o.species_probability.begin(), o.species_probability.end(),
-                                   [](float p) { return p >= 0.0F && p <= 1.0F; });
-  return position && covariance && size && within(o.score, 0.0, 1.0) && plant_class && species;
+  return position && covariance && size && within(o.score, 0.0, 1.0) && plant_class &&
+         is_distribution(o.species_probability);
 }
 
 bool is_covariance(const Eigen::Matrix3d& covariance) {
@@ -98,7 +92,7 @@ Track begin_track(const PreparedObservation& observation, Time stamp,
   fuse_size(track, seen, parameters.size_memory_views);
   track.score = seen.score;
   add_class_evidence(track, seen, parameters);
-  track.species_votes = seen.species_probability;
+  add_species_evidence(track, seen, parameters);
   track.views = 1;
   track.first_seen = stamp;
   track.last_seen = stamp;
@@ -122,7 +116,7 @@ void fuse(Track& track, const PreparedObservation& observation, Time stamp,
 
   fuse_size(track, seen, parameters.size_memory_views);
   add_class_evidence(track, seen, parameters);
-  add_votes(track.species_votes, seen.species_probability);
+  add_species_evidence(track, seen, parameters);
   ++track.views;
   track.score += (seen.score - track.score) / track.views;
   track.misses = 0;
@@ -140,7 +134,7 @@ void absorb(Track& kept, const Track& other, const TrackerParameters& parameters
 
   kept.class_log_odds += other.class_log_odds;
   set_class(kept, 0.0, parameters.class_max_log_odds);
-  add_votes(kept.species_votes, other.species_votes);
+  merge_species_evidence(kept, other, parameters);
   const double share = static_cast<double>(other.views) / (kept.views + other.views);
   kept.score += share * (other.score - kept.score);
   if (other.last_seen > kept.last_seen && other.whole_views > 0) {

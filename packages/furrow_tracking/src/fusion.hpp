@@ -14,8 +14,8 @@ namespace furrow::tracking {
 [[nodiscard]] Track begin_track(const PreparedObservation& observation, Time stamp,
                                 const TrackerParameters& parameters);
 /// Refines a track by an observation. Position: a Kalman filter for a static landmark, with reduced
-/// weight of outliers (Huber 1964). Class: Bayes' rule with floored likelihoods. Radius and area: a
-/// running mean.
+/// weight of outliers (Huber 1964). Class: Bayes' rule with floored likelihoods. Species: see
+/// species_fusion.hpp. Radius and area: a running mean.
 void fuse(Track& track, const PreparedObservation& observation, Time stamp,
           const TrackerParameters& parameters);
 /// Sets the class probability from the evidence of the views, clamped to the bound, and the prior.

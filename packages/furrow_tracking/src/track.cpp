@@ -41,9 +41,9 @@ std::string_view to_string(EndReason reason) {
 }
 
 int Track::species() const {
-  const auto best = std::max_element(species_votes.begin(), species_votes.end());
-  if (best == species_votes.end() || !(*best > 0.0F)) return -1;
-  return static_cast<int>(best - species_votes.begin());
+  const auto best = std::max_element(species_probability.begin(), species_probability.end());
+  if (best == species_probability.end() || !(*best > 0.0F)) return -1;
+  return static_cast<int>(best - species_probability.begin());
 }
 
 }  // namespace furrow::tracking

@@ -16,6 +16,7 @@ void TrackerParameters::visit(ParameterVisitor& v) {
   visit_position(v);
   visit_repeats(v);
   visit_class(v);
+  visit_species(v);
   visit_pose(v);
   rows.visit(v);
 }
@@ -196,6 +197,25 @@ void TrackerParameters::visit_class(ParameterVisitor& v) {
            .min = 1.0,
            .max = 1000.0},
           size_memory_views);
+}
+
+void TrackerParameters::visit_species(ParameterVisitor& v) {
+  v.visit({.name = "species_confusion",
+           .description = "share of views whose species says nothing about the true one",
+           .min = 1e-3,
+           .max = 1.0},
+          species_confusion);
+  v.visit({.name = "species_alternatives",
+           .description = "number of species that a plant may be of, those without a name included",
+           .min = 1,
+           .max = 1000},
+          species_alternatives);
+  v.visit({.name = "species_view_correlation",
+           .description = "correlation between the errors of species in two views of a plant; at 1 "
+                          "further views add no evidence",
+           .min = 0.0,
+           .max = 1.0},
+          species_view_correlation);
 }
 
 void TrackerParameters::visit_pose(ParameterVisitor& v) {

@@ -140,7 +140,7 @@ TEST(Tracker, ClassEvidenceIsBoundedSoThatItCanBeReversed) {
   EXPECT_EQ(views, static_cast<int>(std::ceil(8.0 / std::log(9.0))));
 }
 
-TEST(Tracker, SpeciesAreVoted) {
+TEST(Tracker, FusesTheSpeciesOfItsViews) {
   Tracker tracker;
   double t_s = 0.0;
   Observation observation = seen_at(0.0, 0.0);
@@ -152,7 +152,7 @@ TEST(Tracker, SpeciesAreVoted) {
     tracker.update(view_at(t_s += 0.2), Observations{observation});
   }
   EXPECT_EQ(tracker.tracks()[0].species(), 1);
-  EXPECT_NEAR(tracker.tracks()[0].species_votes[1], 1.9, 1e-6);
+  EXPECT_DOUBLE_EQ(tracker.tracks()[0].species_views, 3.0);
 }
 
 TEST(Tracker, AWholeSizeReplacesATruncatedOne) {

@@ -27,7 +27,8 @@ struct Observation {
   double score = 1.0;      ///< the detector's confidence that this is a plant, [0, 1]
   /// P(class | this view) by PlantClass, not negative, not all zero; normalized on use.
   std::array<double, kPlantClasses> class_probability = {0.5, 0.5};
-  /// P(species | this view) by the caller's species table; empty when not known.
+  /// P(species | this view) by the caller's species table. The rest to 1 belongs to species that
+  /// this view does not name. Empty when not known.
   std::vector<float> species_probability = {};
   bool truncated = false;  ///< cut by the image's border: radius and area are lower bounds
   GroundMask footprint = {};

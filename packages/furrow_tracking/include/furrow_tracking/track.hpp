@@ -45,8 +45,12 @@ struct Track {
   /// P(class | all views, and the place across the rows where that is asked for), by PlantClass.
   std::array<double, kPlantClasses> class_probability = {0.5, 0.5};
   double class_log_odds = 0.0;  ///< of crop to weed, by the views alone
-  /// Sum of the views' species probabilities; empty while no view named a species.
-  std::vector<float> species_votes = {};
+  /// Sum over the views of the log odds of each species against one that no view named; empty
+  /// while no view named a species. species_views is the views' summed weight.
+  std::vector<float> species_log_odds = {};
+  double species_views = 0.0;
+  /// P(species | all views) by the caller's species table; the rest to 1 is unknown.
+  std::vector<float> species_probability = {};
   std::int32_t views = 0;         ///< matches, the first view included
   std::int32_t whole_views = 0;   ///< of these, those not cut by the image's border
   std::int32_t misses = 0;        ///< in a row, counted only where it should have been seen
@@ -61,7 +65,7 @@ struct Track {
   [[nodiscard]] PlantClass plant_class() const {
     return class_probability[0] > class_probability[1] ? PlantClass::kCrop : PlantClass::kWeed;
   }
-  /// Index into the caller's species table, or -1.
+  /// The most probable one: an index into the caller's species table, or -1.
   [[nodiscard]] int species() const;
 };
 

@@ -43,6 +43,9 @@ struct TrackerParameters {
   double class_evidence_weight = 1.0;
   double class_truncated_weight = 1.0;
   double class_max_log_odds = 8.0;
+  double species_confusion = 0.1;
+  std::int64_t species_alternatives = 12;
+  double species_view_correlation = 0.5;
   double size_memory_views = 10.0;
   bool follow_pose = true;
   double follow_behind_m = 0.5;
@@ -59,6 +62,7 @@ struct TrackerParameters {
   void visit_position(ParameterVisitor& v);
   void visit_repeats(ParameterVisitor& v);
   void visit_class(ParameterVisitor& v);
+  void visit_species(ParameterVisitor& v);
   void visit_pose(ParameterVisitor& v);
 };
 
