@@ -6,6 +6,21 @@
 #include <utility>
 
 namespace furrow::planning {
+namespace {
+
+constexpr double kPossible = 0.05;      // a species of less does not count as the worst possible
+constexpr double kSumTolerance = 1e-3;  // probabilities come in single precision
+
+bool is_distribution(std::span<const SpeciesShare> shares) {
+  double sum = 0.0;
+  for (const SpeciesShare& share : shares) {
+    if (!(share.probability >= 0.0 && share.probability <= 1.0)) return false;
+    sum += share.probability;
+  }
+  return sum <= 1.0 + kSumTolerance;
+}
+
+}  // namespace
 
 Result<double> harmfulness(double weed_area_mm2, double beta, double crop_area_mm2,
                            double distance_m) {
@@ -60,6 +75,12 @@ void HarmfulnessParameters::visit(ParameterVisitor& v) {
                           "class weight, with the lowest, or leave standing",
            .choices = {"high", "low", "leave"}},
           unknown_species);
+  v.visit({.name = "caution",
+           .description = "0: the expected beta and class weight over the species; 1: those of the "
+                          "worst species that the weed may be",
+           .min = 0.0,
+           .max = 1.0},
+          caution);
   v.visit({.name = "species", .description = "names of the species table"}, species);
   v.visit({.name = "beta", .description = "factor of each species in kappa", .min = 0.0}, beta);
   v.visit({.name = "class_weight",
@@ -84,6 +105,39 @@ HarmfulnessModel::HarmfulnessModel(HarmfulnessParameters parameters)
       throw ConfigError("beta and class_weight of '" + names[i] + "' must not be negative");
     }
   }
+  const bool high = parameters_.unknown_species == "high";
+  const auto pick = [high](const std::vector<double>& values) {
+    return high ? *std::max_element(values.begin(), values.end())
+                : *std::min_element(values.begin(), values.end());
+  };
+  unknown_ = {pick(parameters_.beta), pick(parameters_.class_weight)};
+}
+
+HarmfulnessModel::Factors HarmfulnessModel::factors(std::span<const SpeciesShare> distribution,
+                                                    double& unknown) const {
+  Factors expected;
+  Factors worst;
+  const auto add = [&](double probability, double beta, double class_weight) {
+    expected.beta += probability * beta;
+    expected.class_weight += probability * class_weight;
+    if (probability < kPossible) return;
+    worst.beta = std::max(worst.beta, beta);
+    worst.class_weight = std::max(worst.class_weight, class_weight);
+  };
+  double known = 0.0;
+  const auto& names = parameters_.species;
+  for (const SpeciesShare& share : distribution) {
+    const auto found = std::find(names.begin(), names.end(), share.species);
+    if (found == names.end()) continue;
+    const auto i = static_cast<std::size_t>(found - names.begin());
+    add(share.probability, parameters_.beta[i], parameters_.class_weight[i]);
+    known += share.probability;
+  }
+  unknown = std::max(1.0 - known, 0.0);
+  add(unknown, unknown_.beta, unknown_.class_weight);
+  const double q = parameters_.caution;
+  return {(1.0 - q) * expected.beta + q * worst.beta,
+          (1.0 - q) * expected.class_weight + q * worst.class_weight};
 }
 
 Result<Harmfulness> HarmfulnessModel::weigh(const WeedPhenotype& weed,
@@ -97,31 +151,23 @@ Result<Harmfulness> HarmfulnessModel::weigh(const WeedPhenotype& weed,
     return Error{ErrorCode::kInvalidArgument,
                  "a plant's position or area is not finite, or its area is negative"};
   }
-  const auto& names = parameters_.species;
-  const auto found = std::find(names.begin(), names.end(), weed.species);
-  Harmfulness result;
-  double beta = 0.0;
-  double class_weight = 0.0;
-  if (found != names.end()) {
-    const auto i = static_cast<std::size_t>(found - names.begin());
-    beta = parameters_.beta[i];
-    class_weight = parameters_.class_weight[i];
-  } else {
-    const bool high = parameters_.unknown_species == "high";
-    const auto pick = [high](const std::vector<double>& values) {
-      return high ? *std::max_element(values.begin(), values.end())
-                  : *std::min_element(values.begin(), values.end());
-    };
-    beta = pick(parameters_.beta);
-    class_weight = pick(parameters_.class_weight);
-    result.leave = parameters_.unknown_species == "leave";
+  const SpeciesShare only{weed.species, 1.0};
+  const auto distribution =
+      weed.distribution.empty() ? std::span<const SpeciesShare>(&only, 1) : weed.distribution;
+  if (!is_distribution(distribution)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "a weed's probabilities of species are not in [0, 1], or their sum is above 1"};
   }
+  double unknown = 0.0;
+  const Factors by_species = factors(distribution, unknown);
+  Harmfulness result{.beta = by_species.beta};
+  result.leave = parameters_.unknown_species == "leave" && unknown > 0.5;
   if (parameters_.scheme == "uniform") {
     result.weight = 1.0;
   } else if (parameters_.scheme == "class") {
-    result.weight = class_weight;
+    result.weight = by_species.class_weight;
   } else {
-    result.weight = kappa(weed, beta, crops);
+    result.weight = kappa(weed, by_species.beta, crops);
   }
   result.leave = result.leave || result.weight < parameters_.left_standing_below;
   return result;

@@ -76,6 +76,55 @@ TEST(HarmfulnessModel, UnknownSpeciesFollowsItsPolicy) {
   EXPECT_TRUE(HarmfulnessModel(parameters).weigh(unknown, {})->leave);
 }
 
+TEST(HarmfulnessModel, ExpectsOverTheSpecies) {
+  // beta 1.0 and 0.25, class weight 1.0 and 0.1; no crop in range: area / (5000 * 0.5).
+  const SpeciesShare shares[] = {{"thistle", 0.2}, {"dicot", 0.8}};
+  const WeedPhenotype weed{"", {0.0, 0.0}, 500.0, shares};
+  auto parameters = kappa_parameters();
+  const double beta = 0.2 * 1.0 + 0.8 * 0.25;
+  const auto expected = HarmfulnessModel(parameters).weigh(weed, {}).value();
+  EXPECT_NEAR(expected.beta, beta, 1e-12);
+  EXPECT_NEAR(expected.weight, 500.0 * beta / 2500.0, 1e-12);
+  parameters.scheme = "class";
+  EXPECT_NEAR(HarmfulnessModel(parameters).weigh(weed, {})->weight, 0.2 + 0.08, 1e-12);
+}
+
+TEST(HarmfulnessModel, CautionTakesTheWorstPossibleSpecies) {
+  auto parameters = kappa_parameters();
+  parameters.scheme = "class";
+  parameters.caution = 1.0;
+  const SpeciesShare possible[] = {{"thistle", 0.06}, {"dicot", 0.94}};
+  const SpeciesShare improbable[] = {{"thistle", 0.04}, {"dicot", 0.96}};
+  const HarmfulnessModel model(parameters);
+  EXPECT_DOUBLE_EQ(model.weigh({"", {0.0, 0.0}, 1.0, possible}, {})->weight, 1.0);
+  EXPECT_DOUBLE_EQ(model.weigh({"", {0.0, 0.0}, 1.0, improbable}, {})->weight, 0.1);
+}
+
+TEST(HarmfulnessModel, TheUnknownShareFollowsItsPolicy) {
+  // 0.6 dicot, 0.4 unknown; a name that is not in the table counts as unknown.
+  const SpeciesShare shares[] = {{"dicot", 0.6}, {"triffid", 0.1}};
+  const WeedPhenotype weed{"", {0.0, 0.0}, 1.0, shares};
+  auto parameters = kappa_parameters();
+  parameters.scheme = "class";
+  EXPECT_NEAR(HarmfulnessModel(parameters).weigh(weed, {})->weight, 0.06 + 0.4, 1e-12);
+  parameters.unknown_species = "low";
+  EXPECT_NEAR(HarmfulnessModel(parameters).weigh(weed, {})->weight, 0.1, 1e-12);
+  parameters.unknown_species = "leave";
+  EXPECT_FALSE(HarmfulnessModel(parameters).weigh(weed, {})->leave);
+  const SpeciesShare unsure[] = {{"dicot", 0.4}};
+  EXPECT_TRUE(HarmfulnessModel(parameters).weigh({"", {0.0, 0.0}, 1.0, unsure}, {})->leave);
+}
+
+TEST(HarmfulnessModel, RefusesWhatIsNoDistribution) {
+  const HarmfulnessModel model(kappa_parameters());
+  for (const double bad : {-0.1, 1.1, kNan}) {
+    const SpeciesShare shares[] = {{"dicot", bad}};
+    EXPECT_FALSE(model.weigh({"", {0.0, 0.0}, 1.0, shares}, {}).ok()) << bad;
+  }
+  const SpeciesShare shares[] = {{"dicot", 0.9}, {"thistle", 0.9}};
+  EXPECT_FALSE(model.weigh({"", {0.0, 0.0}, 1.0, shares}, {}).ok());
+}
+
 TEST(HarmfulnessModel, UniformIsOneForAll) {
   HarmfulnessParameters parameters;
   parameters.scheme = "uniform";

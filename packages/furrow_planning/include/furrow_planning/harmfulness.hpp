@@ -27,6 +27,7 @@ struct HarmfulnessParameters {
   double no_crop_area_mm2 = 5000.0;
   double left_standing_below = 0.0;
   std::string unknown_species = "high";
+  double caution = 0.0;
   std::vector<std::string> species = {"barnyardgrass", "pigweed",   "lambsquarters", "thistle",
                                       "bindweed",      "grass",     "broadleaf",     "chamomile",
                                       "speedwell",     "chickweed", "dicot"};
@@ -36,10 +37,18 @@ struct HarmfulnessParameters {
   void visit(ParameterVisitor& v);
 };
 
+struct SpeciesShare {
+  std::string_view species;
+  double probability = 0.0;
+};
+
 struct WeedPhenotype {
   std::string_view species;  ///< empty: not known
   Eigen::Vector2d p_F = Eigen::Vector2d::Zero();
   double area_mm2 = 0.0;
+  /// Probabilities of species given that it is a weed, each named once. The rest to 1 is of unknown
+  /// species. Used instead of `species` unless empty.
+  std::span<const SpeciesShare> distribution = {};
 };
 
 struct CropPhenotype {
@@ -51,26 +60,37 @@ struct CropPhenotype {
 struct Harmfulness {
   double weight = 0.0;
   bool leave = false;  ///< below the threshold, or an unknown species under the policy "leave"
+  double beta = 0.0;   ///< expected over the species, with caution
 };
 
 /// Weighs weeds by the chosen scheme: "uniform" (all 1), "class" (by species: the paper's 0.1 and
 /// 1.0), "kappa" (by species, area and the crops near it).
+///
+/// Under a distribution over species, beta and class weight are x = (1 - q) E[x] + q max x, with
+/// q = caution. The maximum is over species of at least 5 %. Species that are not in the table
+/// count by the policy unknown_species; "leave" leaves the weed where they hold more than half.
 class HarmfulnessModel {
  public:
   /// Throws ConfigError when the lists of species, beta and class_weight differ in length or a
   /// species is named twice.
   explicit HarmfulnessModel(HarmfulnessParameters parameters);
 
-  /// Error when a position or area is not finite, or an area is negative. Crops without an area
-  /// count with no_crop_area_mm2.
+  /// Error when a position or area is not finite, an area is negative, or a distribution has a
+  /// value outside [0, 1] or a sum above 1. Crops without an area count with no_crop_area_mm2.
   [[nodiscard]] Result<Harmfulness> weigh(const WeedPhenotype& weed,
                                           std::span<const CropPhenotype> crops) const;
   [[nodiscard]] const HarmfulnessParameters& parameters() const { return parameters_; }
 
  private:
+  struct Factors {
+    double beta = 0.0;
+    double class_weight = 0.0;
+  };
+  [[nodiscard]] Factors factors(std::span<const SpeciesShare> distribution, double& unknown) const;
   [[nodiscard]] double kappa(const WeedPhenotype& weed, double beta,
                              std::span<const CropPhenotype> crops) const;
   HarmfulnessParameters parameters_;
+  Factors unknown_;  ///< by the policy
 };
 
 }  // namespace furrow::planning
