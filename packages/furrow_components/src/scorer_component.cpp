@@ -49,9 +49,9 @@ class Scorer final : public graph::Component {
         .input<topics::RobotOdometry>()
         .input<topics::Tracks>()
         .input<topics::Plan>()
-        .input<topics::AxisEvent>()
-        .input<topics::AxisState>()
-        .input<topics::RunStatus>()
+        .input<topics::AxisEvent>(graph::Need::kOptional)
+        .input<topics::AxisState>(graph::Need::kOptional)
+        .input<topics::RunStatus>(graph::Need::kOptional)
         .output<topics::RunRecord>();
   }
 

@@ -120,8 +120,7 @@ void check_recording(const graph::GraphSpec& graph, graph::Registry& registry) {
       const auto from = std::ranges::find(connections, topic, &graph::Connection::topic);
       const bool only_played = from != connections.end() && from->publishers.size() == 1 &&
                                from->publishers.front() == kPlayback;
-      // How far the run is the playback tells by itself.
-      if (!only_played || played.contains(topic) || topic == "run/status") continue;
+      if (!only_played || played.contains(topic)) continue;
       throw ConfigError("--recording: has no '" + topic + "', which " + spec.name + " needs");
     }
   }

@@ -79,11 +79,36 @@ RunSession::RunSession(const RunOptions& options, const std::string& process, bo
       end_(end_of(prepared_.spec, placed_, process_, options.lockstep())) {
   (void)graph::check_graph(prepared_.spec, registry_);
   (void)dds_parameters();
+  check_external_inputs();
   if (!use_dds_ && placed_.size() > 1) {
     throw ConfigError(deployment_.where, "processes",
                       "--no-dds needs a single-process deployment; this one has " +
                           std::to_string(placed_.size()) + " processes");
   }
+}
+
+void RunSession::check_external_inputs() {
+  std::string missing;
+  for (const ExternalInput& input : external_inputs(prepared_.spec, registry_)) {
+    if (input.required) missing += (missing.empty() ? "" : ", ") + input.topic;
+  }
+  if (missing.empty() || (use_dds_ && !options_.lockstep())) return;
+  throw ConfigError(prepared_.spec.where, "external",
+                    std::string(use_dds_ ? "--clock lockstep" : "--no-dds") + ": graph '" +
+                        prepared_.spec.name + "' reads " + missing +
+                        " from the drivers of a robot; play them with --recording, or run with "
+                        "--clock real and without --no-dds");
+}
+
+std::vector<ExternalInput> RunSession::inputs_of_process() {
+  std::vector<ExternalInput> inputs = external_inputs(prepared_.spec, registry_);
+  for (ExternalInput& input : inputs) {
+    std::erase_if(input.readers, [this](const std::string& reader) {
+      return std::ranges::find(process_.components, reader) == process_.components.end();
+    });
+  }
+  std::erase_if(inputs, [](const ExternalInput& input) { return input.readers.empty(); });
+  return inputs;
 }
 
 dds::DdsParameters RunSession::dds_parameters() const {
@@ -117,7 +142,7 @@ RunOutcome RunSession::run(SignalPipe& signals, const Callbacks& callbacks) {
   std::optional<TransportHealth> health;
   if (use_dds_) {
     transport = std::make_unique<dds::DdsTransport>(dds_parameters());
-    health.emplace(*transport);
+    health.emplace(*transport, inputs_of_process());
     runtime_options.transport = transport.get();
     runtime_options.transport_health = [&health] { return health->look(); };
   }

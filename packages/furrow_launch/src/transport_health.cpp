@@ -33,6 +33,12 @@ graph::Health TransportHealth::look() {
     health.counters["best_effort_writers/" + endpoint.topic] += endpoint.best_effort_writers;
   }
   misses_ = misses;
+  const graph::Health heard = inputs_.look(endpoints, transport_.discovery());
+  if (heard.level != graph::HealthLevel::kOk) {
+    health.level = heard.level;
+    health.message += (health.message.empty() ? "" : "; ") + heard.message;
+  }
+  health.counters.insert(heard.counters.begin(), heard.counters.end());
   return health;
 }
 

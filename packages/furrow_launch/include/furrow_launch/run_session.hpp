@@ -11,6 +11,7 @@
 #include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/registry.hpp"
 #include "furrow_graph/runtime.hpp"
+#include "furrow_launch/external_inputs.hpp"
 #include "furrow_launch/graph_setup.hpp"
 #include "furrow_launch/run_observer.hpp"
 #include "furrow_launch/run_options.hpp"
@@ -62,6 +63,9 @@ class RunSession {
   [[nodiscard]] RunOutcome run(SignalPipe& signals, const Callbacks& callbacks);
 
  private:
+  /// Throws ConfigError where inputs can come from no driver and no recording.
+  void check_external_inputs();
+  [[nodiscard]] std::vector<ExternalInput> inputs_of_process();
   [[nodiscard]] dds::DdsParameters dds_parameters() const;
   [[nodiscard]] graph::RuntimeOptions runtime_options() const;
 
