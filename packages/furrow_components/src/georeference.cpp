@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "furrow_components/conversions.hpp"
 #include "furrow_graph/stamp.hpp"
@@ -57,6 +58,29 @@ FixQuality quality_of(std::uint8_t status, double sigma_m) {
     default:
       return FixQuality::kNone;
   }
+}
+
+/// The first thing that makes a fix invalid.
+std::string invalid_because(const sensor_msgs::msg::NavSatFix& fix, const GnssPosition& position) {
+  if (!std::isfinite(fix.latitude()) || !std::isfinite(fix.longitude()) ||
+      !std::isfinite(fix.altitude())) {
+    return "latitude, longitude or altitude is not a number";
+  }
+  if (position.covariance && position.covariance->isZero(0.0)) {
+    return "the covariance is zero, although its type says that it is known; the driver must set "
+           "position_covariance_type to 0 or give a covariance";
+  }
+  if (position.covariance &&
+      !(position.covariance->allFinite() && position.covariance->determinant() > 0.0 &&
+        (*position.covariance)(0, 0) > 0.0)) {
+    return "the covariance is not positive definite";
+  }
+  if (!in_field(position.p_FA_m.x(), position.p_FA_m.y())) {
+    return "the fix is " + std::to_string(std::lround(position.p_FA_m.norm() / 1000.0)) +
+           " km from the origin of the field; set common.origin_latitude_deg and "
+           "common.origin_longitude_deg";
+  }
+  return "the stamp is far ahead of the other sensors; check the clock of its host";
 }
 
 }  // namespace
@@ -114,6 +138,28 @@ GnssPosition Georeference::from_msg(const sensor_msgs::msg::NavSatFix& fix) cons
   }
   position.quality = quality_of(static_cast<std::uint8_t>(fix.status().status()), sigma_m);
   return position;
+}
+
+std::string Georeference::refusal(const sensor_msgs::msg::NavSatFix& fix,
+                                  localization::Outcome outcome) const {
+  using localization::Outcome;
+  switch (outcome) {
+    case Outcome::kNoFix:
+      return "GNSS: the receiver has no fix (status " +
+             std::to_string(static_cast<int>(static_cast<std::int8_t>(fix.status().status()))) +
+             ")";
+    case Outcome::kInvalid:
+      return "GNSS: " + invalid_because(fix, from_msg(fix));
+    case Outcome::kGated:
+      return "GNSS: the fix contradicts the pose by more than their covariances allow";
+    case Outcome::kDuplicate:
+      return "GNSS: two fixes have the same stamp";
+    case Outcome::kTooOld:
+      return "GNSS: the stamp of the fix is older than the filter's history; check the clock of "
+             "its host";
+    default:
+      return "GNSS: the fix was " + std::string(localization::to_string(outcome));
+  }
 }
 
 sensor_msgs::msg::NavSatFix Georeference::to_msg(const GnssPosition& position) const {

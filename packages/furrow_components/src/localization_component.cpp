@@ -131,9 +131,7 @@ class Localization final : public graph::Component {
                         positive_or(message->angular_velocity_covariance()[8],
                                     parameters_.imu_yaw_rate_variance)}));
     });
-    context.input<topics::GnssFix>([this](const auto& message) {
-      count("gnss_", estimator_->add(georeference_.from_msg(*message)));
-    });
+    context.input<topics::GnssFix>([this](const auto& message) { add(*message); });
     context.every(Duration::seconds(1.0 / parameters_.tf_rate_hz),
                   [this](Time now) { publish_transform(now); });
   }
@@ -149,6 +147,47 @@ class Localization final : public graph::Component {
     }
     context_.warn(sensor + reason, "a measurement of " + sensor.substr(0, sensor.size() - 1) +
                                        " was " + reason + "; it was not used");
+  }
+
+  void add(const sensor_msgs::msg::NavSatFix& fix) {
+    const localization::GnssPosition position = georeference_.from_msg(fix);
+    // A filter would take fixes of another place on the earth for its own after some repetitions.
+    const bool elsewhere = position.p_FA_m.allFinite() &&
+                           position.quality != localization::FixQuality::kNone &&
+                           !in_field(position.p_FA_m.x(), position.p_FA_m.y());
+    const auto outcome = elsewhere ? localization::Outcome::kInvalid : estimator_->add(position);
+    switch (outcome) {
+      case localization::Outcome::kUsed:
+      case localization::Outcome::kUsedLate:
+      case localization::Outcome::kRecovered:
+        gnss_refusal_.clear();
+        if (outcome != localization::Outcome::kUsed) count("gnss_", outcome);
+        return;
+      case localization::Outcome::kIgnored:
+        return;
+      default:
+        gnss_refusal_ = georeference_.refusal(fix, outcome);
+        context_.warn("gnss_" + std::string(localization::to_string(outcome)),
+                      gnss_refusal_ + "; it was not used");
+    }
+  }
+
+  /// The cause where it is known, and the effect. Without numbers, so that it changes rarely.
+  [[nodiscard]] std::string uncertainty(const localization::LocalizationHealth& health) const {
+    std::string cause;
+    if (parameters_.estimator == "filter" && parameters_.filter.use_gnss) {
+      if (!gnss_refusal_.empty()) {
+        cause = " (" + gnss_refusal_ + ")";
+      } else if (health.gnss.used == 0) {
+        cause = " (GNSS: no fix was received)";
+      } else if (health.gnss_age_s > parameters_.filter.gnss_timeout_s) {
+        cause = " (GNSS: no fix was received lately)";
+      } else if (health.fix_quality != localization::FixQuality::kRtkFixed) {
+        cause = " (GNSS: the quality of the fix is " +
+                std::string(localization::to_string(health.fix_quality)) + ", not rtk_fixed)";
+      }
+    }
+    return "the pose is uncertain or old" + cause + "; tools may enter their safe state";
   }
 
   void measured(const nav_msgs::msg::Odometry& message) {
@@ -183,9 +222,7 @@ class Localization final : public graph::Component {
   void publish_pose(Time stamp) {
     const auto health = estimator_->health(stamp);
     context_.health(to_health(health.level),
-                    health.level == localization::HealthLevel::kOk
-                        ? ""
-                        : "the pose is uncertain or old; tools may enter their safe state");
+                    health.level == localization::HealthLevel::kOk ? "" : uncertainty(health));
     const auto estimate = estimator_->predict(stamp);
     if (!estimate.ok()) {
       context_.warn("no_pose", estimate.error().message + "; no pose was published");
@@ -242,6 +279,7 @@ class Localization final : public graph::Component {
   localization::StandstillDetector standstill_;
   std::optional<geometry::Pose2> held_;  ///< while the robot stands
   Georeference georeference_;
+  std::string gnss_refusal_;  ///< of the newest fix; empty: it was used
   graph::Output<topics::RobotOdometry> odometry_out_;
   graph::Output<topics::Transforms> transforms_out_;
   BaseOdometry newest_;

@@ -154,6 +154,12 @@ class Scorer final : public graph::Component {
       }
       first_ = base;
     }
+    // A pose that is refused below must not spoil the distance.
+    const bool usable = in_field(base.X_FB.x_m, base.X_FB.y_m);
+    if (usable && newest_) {
+      way_m_ += std::hypot(base.X_FB.x_m - newest_->X_FB.x_m, base.X_FB.y_m - newest_->X_FB.y_m);
+    }
+    if (usable) newest_ = base;
     if (const Status added = poses_.add(base); !added.ok()) {
       context_.warn("bad_odometry", added.error().message + "; it was not used");
     }
@@ -179,11 +185,13 @@ class Scorer final : public graph::Component {
   void finish(const furrow_msgs::msg::RunStatus& status) {
     record_.header(status.header());
     record_.ground_truth(field_known_ && landing_known_);
-    record_.distance_m(status.distance_m());
+    // On a robot no simulator and no recording tells the distance.
+    const double distance_m = status.distance_m() > 0.0 ? status.distance_m() : way_m_;
+    record_.distance_m(distance_m);
     const Time end = graph::from_msg(status.header().stamp());
     const double duration_s = first_ ? (end - first_->stamp).to_seconds() : 0.0;
     record_.duration_s(duration_s);
-    record_.mean_speed_mps(duration_s > 0.0 ? status.distance_m() / duration_s : 0.0);
+    record_.mean_speed_mps(duration_s > 0.0 ? distance_m / duration_s : 0.0);
     for (const auto& [id, track] : tracks_) record_.tracks().push_back(track);
     for (const auto& [id, history] : decisions_) {
       for (const auto& decision : history) record_.decisions().push_back(decision);
@@ -210,6 +218,8 @@ class Scorer final : public graph::Component {
   std::map<std::string, furrow_msgs::msg::AxisState> states_;
   PoseBuffer poses_{Duration::seconds(2.0)};
   std::optional<BaseOdometry> first_;
+  std::optional<BaseOdometry> newest_;
+  double way_m_ = 0.0;  ///< by the poses
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "furrow_core/error.hpp"
+#include "furrow_localization/pose_filter.hpp"
 
 namespace furrow::components {
 namespace {
@@ -58,6 +59,53 @@ TEST(Georeference, KeepsAnUnknownCovarianceUnknown) {
   const Georeference georeference({});
   const auto fix = georeference.to_msg(position(FixQuality::kRtkFixed, 0.0, 0.0));
   EXPECT_FALSE(georeference.from_msg(fix).covariance.has_value());
+}
+
+/// A filter that knows that it is at position().
+localization::PoseFilter filter_there() {
+  localization::PoseFilterParameters parameters;
+  parameters.initial_x_m = 12.25;
+  parameters.initial_y_m = -3.5;
+  return localization::PoseFilter(parameters);
+}
+
+/// What a filter makes of a fix, and the reason that the user reads.
+std::string refusal_of(const sensor_msgs::msg::NavSatFix& fix) {
+  const Georeference georeference({});
+  localization::PoseFilter filter = filter_there();
+  return georeference.refusal(fix, filter.add(georeference.from_msg(fix)));
+}
+
+sensor_msgs::msg::NavSatFix good_fix() {
+  return Georeference({}).to_msg(position(FixQuality::kRtkFixed, 0.01, 0.01));
+}
+
+TEST(Georeference, SaysWhyAFixIsRefused) {
+  auto no_fix = good_fix();
+  no_fix.status().status(255);  // -1
+  EXPECT_EQ(refusal_of(no_fix), "GNSS: the receiver has no fix (status -1)");
+  auto nan = good_fix();
+  nan.latitude(NAN);
+  EXPECT_EQ(refusal_of(nan), "GNSS: latitude, longitude or altitude is not a number");
+  auto zero = good_fix();
+  zero.position_covariance({});
+  EXPECT_NE(refusal_of(zero).find("covariance is zero"), std::string::npos) << refusal_of(zero);
+  auto negative = good_fix();
+  negative.position_covariance()[0] = -1.0;
+  EXPECT_EQ(refusal_of(negative), "GNSS: the covariance is not positive definite");
+  auto far = good_fix();
+  far.latitude(far.latitude() + 2.0);  // a degree of latitude is 111 km
+  const std::string refusal = Georeference({}).refusal(far, localization::Outcome::kInvalid);
+  EXPECT_NE(refusal.find("222 km from the origin"), std::string::npos) << refusal;
+}
+
+TEST(Georeference, SaysThatARepeatedFixHasTheSameStamp) {
+  const Georeference georeference({});
+  localization::PoseFilter filter = filter_there();
+  const auto fix = good_fix();
+  EXPECT_EQ(filter.add(georeference.from_msg(fix)), localization::Outcome::kUsed);
+  EXPECT_EQ(georeference.refusal(fix, filter.add(georeference.from_msg(fix))),
+            "GNSS: two fixes have the same stamp");
 }
 
 TEST(Georeference, RejectsAnOriginThatIsNotOnTheEarth) {

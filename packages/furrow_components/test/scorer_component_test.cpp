@@ -25,6 +25,7 @@ using msgs::DecisionKind;
 /// What the scorer is given, and its record.
 struct Day {
   geometry::Pose2 start;
+  double step_m = 0.0;  ///< along x, each 10 ms
   bool true_field = false;
   bool true_odometry = false;
   std::vector<furrow_msgs::msg::Track> tracks;
@@ -67,7 +68,9 @@ class Stage final : public graph::Component {
  private:
   void step(Time now) {
     const std::size_t i = step_++;
-    const auto odometry = to_msg(BaseOdometry{now, day_.start, 0.5, 0.0}, kFieldFrame);
+    geometry::Pose2 pose = day_.start;
+    pose.x_m += day_.step_m * static_cast<double>(i);
+    const auto odometry = to_msg(BaseOdometry{now, pose, 0.5, 0.0}, kFieldFrame);
     odometry_out_.publish(odometry);
     if (day_.true_field && i == 0) field_out_.publish(furrow_msgs::msg::TrueField());
     if (day_.true_odometry) truth_out_.publish(odometry);
@@ -195,6 +198,13 @@ TEST(ScorerComponent, RefusesOdometryInAMapFrameAtTheStart) {
             "scorer: localization/odometry starts at x 300000.0 m, y 5600000.0 m, more than 10 km "
             "from the origin of the field frame; is it a map frame, such as UTM? Publish it "
             "relative to a place in the field");
+}
+
+TEST(ScorerComponent, TakesTheDistanceFromThePosesWhereNothingElseTellsIt) {
+  Day day{.start = {}, .step_m = 0.005};
+  EXPECT_EQ(run(day).reason, "finished");
+  ASSERT_TRUE(day.record);
+  EXPECT_NEAR(day.record->distance_m(), 20 * 0.005, 0.006);  // the last pose may be the next one
 }
 
 }  // namespace

@@ -31,6 +31,9 @@ class Georeference {
   /// Status GBAS stands for RTK. It is a fixed solution if its standard deviation is at most
   /// kFixedSigma_m. A covariance of unknown type leaves that of the measurement empty.
   [[nodiscard]] localization::GnssPosition from_msg(const sensor_msgs::msg::NavSatFix& fix) const;
+  /// Why a filter did not use the fix, and what to do: "GNSS: the receiver has no fix (status -1)".
+  [[nodiscard]] std::string refusal(const sensor_msgs::msg::NavSatFix& fix,
+                                    localization::Outcome outcome) const;
   /// A covariance of zero is published as unknown.
   [[nodiscard]] sensor_msgs::msg::NavSatFix to_msg(
       const localization::GnssPosition& position) const;
