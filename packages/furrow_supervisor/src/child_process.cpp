@@ -16,11 +16,19 @@ namespace {
 
 constexpr int kCannotStart = 127;
 
-// Between fork and exec: only what is safe after a fork of a program with threads.
+// Between fork and exec: only what is safe after a fork of a program with threads. All signals are
+// blocked until the handlers of the parent are gone: one that is asked to end so soon would write
+// into the parent's pipe of signals, and the parent would stop everything.
 [[noreturn]] void become(char* const* arguments, int error_pipe, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(kCannotStart);
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      std::signal(signal, SIG_DFL);
+    }
+  }
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -41,8 +49,13 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
   for (std::string& argument : copy) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   const pid_t parent = getpid();
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = fork();
   if (pid == 0) become(arguments.data(), pipe[1], parent);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close(pipe[1]);
   if (pid < 0) {
     close(pipe[0]);

@@ -1,9 +1,11 @@
 #include "furrow_supervisor/child_process.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -36,6 +38,26 @@ TEST(ChildProcess, IsSentSignals) {
   const int status = end_of(*child);
   EXPECT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(WTERMSIG(status), SIGTERM);
+}
+
+TEST(ChildProcess, ASignalBeforeItsProgramRunsIsNotHandledByTheParentsHandler) {
+  // The handler tells by an inherited pipe, as that of the supervisor does.
+  static std::array<int, 2> told{};
+  ASSERT_EQ(pipe2(told.data(), O_NONBLOCK | O_CLOEXEC), 0);
+  const auto previous = std::signal(SIGTERM, [](int) { (void)!write(told[1], "x", 1); });
+  for (int i = 0; i < 50; ++i) {
+    auto child = ChildProcess::start({"/bin/sleep", "60"});
+    ASSERT_TRUE(child.ok());
+    ASSERT_EQ(kill(child->pid(), SIGTERM), 0);
+    const int status = end_of(*child);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(WTERMSIG(status), SIGTERM);
+    char text = 0;
+    ASSERT_EQ(read(told[0], &text, 1), -1) << "the child ran the handler of its parent";
+  }
+  std::signal(SIGTERM, previous);
+  close(told[0]);
+  close(told[1]);
 }
 
 TEST(ChildProcess, IsKilledWithItsObject) {
