@@ -17,8 +17,8 @@ namespace {
 constexpr int kCannotStart = 127;
 
 // Between fork and exec: only what is safe after a fork of a program with threads. All signals are
-// blocked until the handlers of the parent are gone. A child that is asked to end so soon would else
-// write into the parent's pipe of signals, and the parent would stop everything.
+// blocked until the handlers of the parent are gone. A child that is asked to end so soon would
+// else write into the parent's pipe of signals, and the parent would stop everything.
 [[noreturn]] void become(char* const* arguments, int error_pipe, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);

@@ -11,7 +11,8 @@
 
 namespace furrow::components {
 
-/// 8UC3 as bgr8, 8UC4 as bgra8, 8UC1 as mono8, 16UC1 and 32FC1 by these names. @pre one of these types, continuous or not.
+/// 8UC3 as bgr8, 8UC4 as bgra8, 8UC1 as mono8, 16UC1 and 32FC1 by these names. @pre one of these
+/// types, continuous or not.
 [[nodiscard]] sensor_msgs::msg::Image to_msg(const cv::Mat& image, Time stamp,
                                              const std::string& frame);
 
