@@ -3,22 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
+
+#include "furrow_core/distribution.hpp"
 
 namespace furrow::planning {
 namespace {
 
-constexpr double kPossible = 0.05;      // a species of less does not count as the worst possible
-constexpr double kSumTolerance = 1e-3;  // probabilities come in single precision
-
-bool is_distribution(std::span<const SpeciesShare> shares) {
-  double sum = 0.0;
-  for (const SpeciesShare& share : shares) {
-    if (!(share.probability >= 0.0 && share.probability <= 1.0)) return false;
-    sum += share.probability;
-  }
-  return sum <= 1.0 + kSumTolerance;
-}
+constexpr double kPossible = 0.05;  // a species of less does not count as the worst possible
 
 }  // namespace
 
@@ -154,7 +147,7 @@ Result<Harmfulness> HarmfulnessModel::weigh(const WeedPhenotype& weed,
   const SpeciesShare only{weed.species, 1.0};
   const auto distribution =
       weed.distribution.empty() ? std::span<const SpeciesShare>(&only, 1) : weed.distribution;
-  if (!is_distribution(distribution)) {
+  if (!is_distribution(distribution | std::views::transform(&SpeciesShare::probability))) {
     return Error{ErrorCode::kInvalidArgument,
                  "a weed's probabilities of species are not in [0, 1], or their sum is above 1"};
   }

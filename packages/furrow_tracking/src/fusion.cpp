@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "furrow_core/distribution.hpp"
 #include "species_fusion.hpp"
 
 namespace furrow::tracking {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kMaxPosition_m = 1e7;
 constexpr double kMaxRadius_m = 10.0;
+constexpr std::size_t kMaxSpecies = 1024;
 
 bool within(double value, double low, double high) {
   return value >= low && value <= high;
@@ -70,8 +72,9 @@ bool is_valid(const Observation& o) {
   const bool plant_class = within(o.class_probability[0], 0.0, 1e300) &&
                            within(o.class_probability[1], 0.0, 1e300) &&
                            o.class_probability[0] + o.class_probability[1] > 0.0;
-  return position && covariance && size && within(o.score, 0.0, 1.0) && plant_class &&
-         is_distribution(o.species_probability);
+  const bool species =
+      o.species_probability.size() <= kMaxSpecies && is_distribution(o.species_probability);
+  return position && covariance && size && within(o.score, 0.0, 1.0) && plant_class && species;
 }
 
 bool is_covariance(const Eigen::Matrix3d& covariance) {

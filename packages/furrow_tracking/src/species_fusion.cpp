@@ -6,9 +6,6 @@
 namespace furrow::tracking {
 namespace {
 
-constexpr std::size_t kMaxSpecies = 1024;
-constexpr double kSumTolerance = 1e-3;  // single precision, and sums of rounded numbers
-
 void update_probability(Track& track, const TrackerParameters& parameters) {
   const std::vector<float>& sums = track.species_log_odds;
   track.species_probability.assign(sums.size(), 0.0F);
@@ -34,15 +31,6 @@ void update_probability(Track& track, const TrackerParameters& parameters) {
 }
 
 }  // namespace
-
-bool is_distribution(const std::vector<float>& probabilities) {
-  double sum = 0.0;
-  for (const float p : probabilities) {
-    if (!(p >= 0.0F && p <= 1.0F)) return false;
-    sum += p;
-  }
-  return probabilities.size() <= kMaxSpecies && sum <= 1.0 + kSumTolerance;
-}
 
 void add_species_evidence(Track& track, const Observation& seen,
                           const TrackerParameters& parameters) {

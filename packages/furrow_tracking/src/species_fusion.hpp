@@ -1,13 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "furrow_tracking/tracker.hpp"
 
 namespace furrow::tracking {
-
-/// Not more than 1024 values, each in [0, 1], that sum to 1 at most.
-[[nodiscard]] bool is_distribution(const std::vector<float>& probabilities);
 
 /// Adds a view's species to a track and updates its species_probability. No effect where the view
 /// names none.
