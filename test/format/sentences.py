@@ -14,7 +14,7 @@ FIGURE = re.compile(
 CITATION = re.compile(r"\([^()]*\b(?:19|20)\d\d[a-z]?\)")
 END = re.compile(r"[.!?][)\"'”’`]*(?=\s+[\"'“‘(`*_\[]*[A-Z0-9¶]|\s*$)")
 WORD = re.compile(r"[^\W\d_][\w'’/.\u2024-]*")
-# A placeholder for code in running text. It counts as one word and may start a sentence.
+# Stands for code in running text. It counts as one word and may start a sentence.
 CODE = "¶"
 
 
@@ -32,7 +32,7 @@ def _same_length(replacement):
 
 
 def neutralize(text):
-    """`text` with code spans and URLs as placeholders and abbreviations without full stops."""
+    """`text` with CODE for code spans and URLs, and abbreviations without full stops."""
     text = re.sub(r"(`+)[^`]+\1", _same_length(CODE), text)
     text = URL.sub(_same_length(CODE), text)
     text = CITATION.sub(_same_length(" "), text)

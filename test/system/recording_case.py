@@ -13,6 +13,7 @@ class RecordingCase(FurrowCase):
     """Has a recording of a run in simulated time, made once."""
 
     recorded = None
+    record_options = []
 
     @classmethod
     def setUpClass(cls):
@@ -20,7 +21,7 @@ class RecordingCase(FurrowCase):
         case = FurrowCase()
         case.setUp()
         cls.addClassCleanup(case.doCleanups)
-        case.run_graph(*SHORT_RUN, "--record", case.folder / "run")
+        case.run_graph(*SHORT_RUN, "--record", case.folder / "run", *cls.record_options)
         cls.recorded = case.folder / "run_0.mcap"
         cls.first_out = case.out
 
