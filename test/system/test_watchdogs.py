@@ -45,6 +45,16 @@ class Simulator:
         self.process.wait(10)
 
 
+# A driver that is restarted in time shuts its valve itself, before the module's watchdog has to.
+NOT_RESTARTED = """deployment: not_restarted
+processes:
+  robot: {components: ["robot?", "description?"], restart: false}
+  scorer: {components: ["scorer?", "markers?"], restart: false}
+  driver_axis_1: {components: ["driver_axis_1"], restart: false}
+  others: {components: "*", each: true}
+"""
+
+
 class WatchdogTest(DeploymentCase):
     DRIVE_WATCHDOG_S = 0.3
     MODULE_WATCHDOG_S = 0.5
@@ -77,7 +87,9 @@ class WatchdogTest(DeploymentCase):
                      "driver_axis_1.coil_port": module.port,
                      "driver_axis_1.coil_watchdog": "wago_750",
                      "driver_axis_1.coil_watchdog_s": self.MODULE_WATCHDOG_S}
-        up = self.up("--graph", "weeding_cia402", "--length", 40,
+        deployment = self.folder / "not_restarted.yaml"
+        deployment.write_text(NOT_RESTARTED)
+        up = self.up("--graph", "weeding_cia402", "--deploy", deployment, "--length", 40,
                      *(argument for name, value in settings.items()
                        for argument in ("--set", f"{name}={value}")))
         self.wait(lambda: drives[0].times("operation_enabled"), "the drive was not enabled", up=up)
