@@ -10,7 +10,7 @@ LENGTH_M = 2
 WALL_CLOCK_KEYS = {"realtime_factor", "wall_s"}
 MISSES = {"undetected", "unconfirmed", "misclassified", "low_priority", "protected_crop",
           "unreachable", "stale", "outside", "fault", "placement", "end_of_run",
-          "inactive"}
+          "inactive", "unsure"}
 # What a planner may lose when it sees everything and the machine does as it says.
 PLANNING_MISSES = {"low_priority", "protected_crop", "unreachable", "outside", "end_of_run"}
 

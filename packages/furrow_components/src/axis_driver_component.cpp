@@ -142,7 +142,7 @@ class AxisDriverComponent final : public graph::Component {
     protected_.clear();
     const double x_m = base_x_m_ + axis_.p_BN0.x();
     for (const auto& track : tracks.tracks()) {
-      const bool other = track.crop_probability() < parameters_.crop_threshold;
+      const bool other = track.crop_probability() < parameters_.protect_threshold;
       const Eigen::Vector2d p_F = from_point(track.position()).head<2>();
       const bool far = std::abs(p_F.x() - x_m) > parameters_.protected_range_m;
       if (track.confirmed() && !other && !far) protected_.push_back({track.id(), p_F});

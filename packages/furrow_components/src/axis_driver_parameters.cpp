@@ -14,11 +14,12 @@ void AxisDriverParameters::visit(ParameterVisitor& v) {
            .min = 1.0,
            .max = 1000.0},
           state_rate_hz);
-  v.visit({.name = "crop_threshold",
-           .description = "tracks at or above this probability are protected",
+  v.visit({.name = "protect_threshold",
+           .description = "tracks with at least this crop probability are protected: crops, and "
+                          "plants that the planner calls unsure",
            .min = 0.0,
            .max = 1.0},
-          crop_threshold);
+          protect_threshold);
   v.visit({.name = "protected_range_m",
            .unit = "m",
            .description = "crops this far before and behind the axis are watched",

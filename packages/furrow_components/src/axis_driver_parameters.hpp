@@ -13,7 +13,7 @@ struct AxisDriverParameters {
   std::string axis;
   double rate_hz = 500.0;
   double state_rate_hz = 50.0;
-  double crop_threshold = 0.5;
+  double protect_threshold = 0.3;
   double protected_range_m = 1.0;
   std::string latch_folder;
   std::string nozzle_file;

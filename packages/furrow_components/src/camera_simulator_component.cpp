@@ -220,7 +220,13 @@ class CameraSimulator final : public graph::Component {
     furrow_msgs::msg::PlantInstance instance;
     instance.score(1.0F);
     instance.crop_probability(plant.kind == field::PlantKind::kCrop ? 1.0F : 0.0F);
-    instance.species(plant.species);
+    // The photographs of some data sets name no species.
+    if (!plant.species.empty() && plant.species != "crop" && plant.species != "weed") {
+      auto& species = instance.species().emplace_back();
+      species.species(plant.species);
+      species.crop(plant.kind == field::PlantKind::kCrop);
+      species.probability(1.0F);
+    }
     const auto& size = camera_->intrinsics();
     const double radius_px = plant.radius_m * size.fx_px / p_C.z();
     const int left = std::clamp(static_cast<int>(pixel.x() - radius_px), 0, size.width_px - 1);

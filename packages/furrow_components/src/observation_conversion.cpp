@@ -85,6 +85,7 @@ Result<tracking::Observation> observe(const furrow_msgs::msg::PlantInstance& ins
   observation.covariance_F_m2 = point->covariance_F_m2;
   observation.radius_m = instance.radius_m();
   observation.area_mm2 = instance.area_mm2();
+  observation.leaves = instance.leaves();
   observation.score = instance.score();
   const double crop = instance.crop_probability();
   observation.class_probability = {crop, 1.0 - crop};

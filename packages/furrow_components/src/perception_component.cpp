@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "camera_calibration.hpp"
 #include "depth_watch.hpp"
@@ -182,6 +184,7 @@ class Perception final : public graph::Component {
     furrow_msgs::msg::PlantInstance message;
     message.score(static_cast<float>(instance.score));
     message.crop_probability(static_cast<float>(instance.crop_probability));
+    message.species(species_of(instance));
     message.box().x_offset(static_cast<std::uint32_t>(instance.box_px.x));
     message.box().y_offset(static_cast<std::uint32_t>(instance.box_px.y));
     message.box().width(static_cast<std::uint32_t>(instance.box_px.width));
@@ -194,6 +197,24 @@ class Perception final : public graph::Component {
     message.area_mm2(instance.area_mm2);
     message.leaves(static_cast<std::uint8_t>(vision::leaf_count(growth_.stage(instance.area_mm2))));
     return message;
+  }
+
+  /// Of classes that are species, such as "thistle"; "crop" and "weed" name none.
+  [[nodiscard]] std::vector<furrow_msgs::msg::SpeciesProbability> species_of(
+      const vision::Instance& instance) const {
+    constexpr double kLeast = 0.001;
+    std::vector<furrow_msgs::msg::SpeciesProbability> result;
+    const auto& classes = detector_->classes();
+    for (std::size_t i = 0; i < std::min(classes.size(), instance.class_scores.size()); ++i) {
+      const bool crop = classes[i].kind == vision::SubClassKind::kCrop;
+      if (classes[i].name == (crop ? "crop" : "weed") || instance.class_scores[i] < kLeast)
+        continue;
+      auto& species = result.emplace_back();
+      species.species(classes[i].name);
+      species.crop(crop);
+      species.probability(static_cast<float>(std::min(instance.class_scores[i], 1.0)));
+    }
+    return result;
   }
 
   using Image = sensor_msgs::msg::Image;

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "appraisal_conversion.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_components/pose_buffer.hpp"
 #include "furrow_geometry/ground_view.hpp"
@@ -21,6 +24,7 @@ namespace furrow::components {
 namespace {
 
 namespace topics = msgs::topics;
+using furrow_msgs::msg::Appraisal;
 using furrow_msgs::msg::Track;
 
 /// Decides which weeds to treat, and routes the axes over them.
@@ -127,11 +131,14 @@ class PlannerComponent final : public graph::Component {
     left_standing_.clear();
     deleted_.clear();
     invalid_.clear();
+    unsure_.clear();
+    appraisals_.clear();
     for (const Track& track : tracks.tracks()) {
       if (const auto state = msgs::from_msg(track.state()); !state.ok()) {
         context_.warn("unknown_values", state.error().message + "; the track is not treated");
       }
       conversion_.seen(track.id(), graph::from_msg(track.last_seen()));
+      // Unsure plants do not count as crops: a weed beside them is not the more harmful.
       const planning::CropPhenotype crop{from_point(track.position()).head<2>(), track.area_mm2()};
       // An invalid crop would take the weight from every weed near it.
       const bool valid = crop.p_F.allFinite() && std::isfinite(crop.area_mm2) && crop.area_mm2 >= 0;
@@ -140,8 +147,9 @@ class PlannerComponent final : public graph::Component {
     for (const Track& track : tracks.tracks()) {
       if (!alive(track)) {
         forget(track.id());
-      } else if (is_crop(track)) {
+      } else if (is_protected(track)) {
         view_->remove(track.id());
+        if (!is_crop(track)) unsure_.push_back(track.id());
         count_if_bad(view_->update_protected(
             {.id = track.id(), .p_F = from_point(track.position()).head<2>()}));
       } else if (stale || !msgs::from_msg(track.state()).ok()) {
@@ -162,6 +170,10 @@ class PlannerComponent final : public graph::Component {
   [[nodiscard]] bool is_crop(const Track& track) const {
     return track.crop_probability() >= parameters_.crop_threshold;
   }
+  /// A crop, or too likely one to be treated.
+  [[nodiscard]] bool is_protected(const Track& track) const {
+    return track.crop_probability() >= parameters_.unsure_threshold;
+  }
 
   // A target that the robot has passed keeps its outcome: remove() returns false. A track that is
   // deleted earlier was confirmed too early; the ledger calls it unconfirmed.
@@ -172,14 +184,16 @@ class PlannerComponent final : public graph::Component {
 
   void update_weed(const Track& track) {
     const Eigen::Vector2d p_F = from_point(track.position()).head<2>();
+    weed_species(track, shares_);
     const auto weight = harmfulness_.weigh(
-        {.species = track.species(), .p_F = p_F, .area_mm2 = track.area_mm2()}, crops_);
+        {.species = {}, .p_F = p_F, .area_mm2 = track.area_mm2(), .distribution = shares_}, crops_);
     if (!weight.ok()) {
       context_.warn("bad_tracks", weight.error().message + "; the track is not treated");
       view_->remove(track.id());
       invalid_.push_back(track.id());
       return;
     }
+    appraisals_.emplace_back(track.id(), appraisal(*weight, track, parameters_.harmfulness));
     if (weight->leave) {
       view_->remove(track.id());
       left_standing_.push_back(track.id());
@@ -217,13 +231,26 @@ class PlannerComponent final : public graph::Component {
     decide(left_standing_, DecisionKind::kLowPriority);
     decide(invalid_, DecisionKind::kStale);
     decide(deleted_, DecisionKind::kUnconfirmed);
+    decide(unsure_, DecisionKind::kUnsure);
     outcomes_.clear();
     view_->take_outcomes(outcomes_);
     for (const planning::TargetOutcome& outcome : outcomes_) {
       message.decisions().push_back(conversion_.to_msg(
           base.stamp, outcome.id, decision_kind(outcome.decision), outcome.axis));
     }
+    add_appraisals(message);
     out_.publish(std::move(message));
+  }
+
+  /// To the decisions about weeds of the newest tracks. One about a track that is gone has none.
+  void add_appraisals(furrow_msgs::msg::Plan& message) {
+    std::ranges::sort(appraisals_, {}, &std::pair<std::int64_t, Appraisal>::first);
+    for (auto& decision : message.decisions()) {
+      const auto found = std::ranges::lower_bound(appraisals_, decision.track_id(), {},
+                                                  &std::pair<std::int64_t, Appraisal>::first);
+      if (found == appraisals_.end() || found->first != decision.track_id()) continue;
+      decision.appraisal(found->second);
+    }
   }
 
   graph::Context& context_;
@@ -245,6 +272,9 @@ class PlannerComponent final : public graph::Component {
   std::vector<std::int64_t> left_standing_;  ///< left for biodiversity
   std::vector<std::int64_t> invalid_;        ///< weeds with invalid numbers or stale tracks
   std::vector<std::int64_t> deleted_;        ///< targets whose track was deleted
+  std::vector<std::int64_t> unsure_;         ///< neither crop nor sure enough a weed
+  std::vector<std::pair<std::int64_t, Appraisal>> appraisals_;  ///< of the weeds, by track
+  std::vector<planning::SpeciesShare> shares_;                  ///< of the track at hand
   std::vector<planning::TargetOutcome> outcomes_;
 };
 

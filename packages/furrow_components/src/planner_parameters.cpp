@@ -14,6 +14,12 @@ void PlannerComponentParameters::visit(ParameterVisitor& v) {
            .min = 0.0,
            .max = 1.0},
           crop_threshold);
+  v.visit({.name = "unsure_threshold",
+           .description = "tracks with at least this crop probability that are no crop are unsure: "
+                          "protected like a crop, and not treated",
+           .min = 0.0,
+           .max = 1.0},
+          unsure_threshold);
   v.visit({.name = "treat_unconfirmed",
            .description = "also plan for weeds whose track is not confirmed: fewer missed weeds, "
                           "more sprays on bare soil"},
@@ -52,6 +58,9 @@ PlannerComponentParameters completed(PlannerComponentParameters parameters) {
   if (parameters.govern_speed &&
       (parameters.planner.view != "rolling" || parameters.planner.fire_while_moving)) {
     throw ConfigError("govern_speed needs view 'rolling', and fire_while_moving false");
+  }
+  if (parameters.unsure_threshold > parameters.crop_threshold) {
+    throw ConfigError("unsure_threshold must not be above crop_threshold");
   }
   if (parameters.species_file.empty()) return parameters;
   planning::HarmfulnessParameters& harmfulness = parameters.harmfulness;

@@ -13,6 +13,7 @@ struct PlannerComponentParameters {
   std::string tool_file;
   std::string species_file;
   double crop_threshold = 0.5;
+  double unsure_threshold = 0.3;
   bool treat_unconfirmed = false;
   double max_pose_age_s = 0.2;
   double max_tracks_age_s = 2.0;

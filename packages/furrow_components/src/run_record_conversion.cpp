@@ -41,6 +41,8 @@ Reason reason_of(msgs::DecisionKind decision) {
       return Reason::kFault;
     case DecisionKind::kUnconfirmed:
       return Reason::kUnconfirmed;
+    case DecisionKind::kUnsure:
+      return Reason::kUnsure;
   }
   return Reason::kNone;
 }
@@ -69,6 +71,21 @@ Reason reason_of(msgs::AxisEventKind event) {
   return Reason::kNone;
 }
 
+ledger::Appraisal to_appraisal(const furrow_msgs::msg::Appraisal& message) {
+  return {.scheme = message.scheme(),
+          .species = message.species(),
+          .species_probability = message.species_probability(),
+          .unknown_probability = message.unknown_probability(),
+          .area_mm2 = message.area_mm2(),
+          .leaves = message.leaves(),
+          .beta = message.beta(),
+          .class_weight = message.class_weight(),
+          .crop_distance_m = message.crop_distance_m(),
+          .crop_proximity = message.crop_proximity(),
+          .worth = message.worth(),
+          .threshold = message.threshold()};
+}
+
 Result<ledger::Decision> to_decision(const furrow_msgs::msg::Decision& message, Axes axes) {
   const auto kind = msgs::from_msg(message.decision());
   if (!kind.ok()) return kind.error();
@@ -77,19 +94,25 @@ Result<ledger::Decision> to_decision(const furrow_msgs::msg::Decision& message, 
   decision.reason = reason_of(*kind);
   decision.action = decision.reason == Reason::kNone ? Action::kTreat : Action::kLeave;
   if (decision.action == Action::kTreat) decision.axis = axis_index(axes, message.axis());
+  if (message.appraisal().valid()) decision.appraisal = to_appraisal(message.appraisal());
   return decision;
 }
 
 ledger::TrackView to_track_view(const furrow_msgs::msg::Track& message) {
-  const Eigen::Vector3d p_F = from_point(message.position());
-  return {
-      .id = message.id(),
-      .p_F_m = p_F.head<2>(),
-      .kind = message.crop_probability() > 0.5 ? field::PlantKind::kCrop : field::PlantKind::kWeed,
-      .confirmed = message.confirmed(),
-      .species = message.species(),
-      .radius_m = message.radius_m(),
-      .area_mm2 = message.area_mm2()};
+  const bool crop = message.crop_probability() > 0.5;
+  ledger::TrackView view{.id = message.id(),
+                         .p_F_m = from_point(message.position()).head<2>(),
+                         .kind = crop ? field::PlantKind::kCrop : field::PlantKind::kWeed,
+                         .confirmed = message.confirmed(),
+                         .leaves = message.leaves(),
+                         .radius_m = message.radius_m(),
+                         .area_mm2 = message.area_mm2()};
+  for (const auto& species : message.species()) {
+    if (species.crop() != crop || !(species.probability() > view.species_probability)) continue;
+    view.species = species.species();
+    view.species_probability = species.probability();
+  }
+  return view;
 }
 
 Status add_decisions(const furrow_msgs::msg::RunRecord& message, Axes axes,

@@ -51,7 +51,7 @@ void TrackFieldParameters::visit(ParameterVisitor& v) {
 }
 
 field::FieldModel field_of_tracks(std::span<const tracking::Track> tracks,
-                                  std::span<const std::string> species,
+                                  const SpeciesNames& species,
                                   const TrackFieldParameters& parameters) {
   field::FieldModel field{
       .name = "tracked", .source = "confirmed tracks of a run", .length_m = parameters.length_m};
@@ -62,11 +62,8 @@ field::FieldModel field_of_tracks(std::span<const tracking::Track> tracks,
     plant.id = static_cast<std::int64_t>(track.id);
     const bool crop = track.plant_class() == tracking::PlantClass::kCrop;
     plant.kind = crop ? field::PlantKind::kCrop : field::PlantKind::kWeed;
-    const int vote = track.species();
-    plant.species = vote >= 0 && static_cast<std::size_t>(vote) < species.size()
-                        ? species[static_cast<std::size_t>(vote)]
-                    : crop ? parameters.field_model_crop_species
-                           : parameters.field_model_weed_species;
+    plant.species = species.of_kind(track).value_or(crop ? parameters.field_model_crop_species
+                                                         : parameters.field_model_weed_species);
     plant.p_F_m = p_F;
     plant.radius_m = track.radius_m;
     plant.area_mm2 = track.area_mm2;

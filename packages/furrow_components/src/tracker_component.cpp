@@ -8,6 +8,7 @@
 #include "furrow_components/conversions.hpp"
 #include "furrow_components/observation_conversion.hpp"
 #include "furrow_components/pose_buffer.hpp"
+#include "furrow_components/species_names.hpp"
 #include "furrow_components/track_conversion.hpp"
 #include "furrow_components/track_field.hpp"
 #include "furrow_geometry/tool_model.hpp"
@@ -162,7 +163,7 @@ class TrackerComponent final : public graph::Component {
     std::vector<tracking::Observation> observations;
     for (const auto& instance : message.instances()) {
       if (auto seen = observe(instance, camera_, X_FC, parameters_.observation); seen.ok()) {
-        if (!instance.species().empty()) vote(instance.species(), *seen);
+        seen->species_probability = species_of(instance);
         observations.push_back(std::move(seen).value());
       } else {
         context_.warn("bad_instances", seen.error().message + "; the plant was not tracked");
@@ -206,7 +207,7 @@ class TrackerComponent final : public graph::Component {
   void save_field() {
     std::vector<tracking::Track> all = deleted_;
     all.insert(all.end(), tracker_.tracks().begin(), tracker_.tracks().end());
-    const field::FieldModel field = field_of_tracks(all, species_names_, parameters_.field);
+    const field::FieldModel field = field_of_tracks(all, species_, parameters_.field);
     if (const Status saved = write_field(field, parameters_.field.field_model_file); !saved.ok()) {
       context_.health(graph::HealthLevel::kError,
                       saved.error().message + "; the field was not saved");
@@ -214,18 +215,14 @@ class TrackerComponent final : public graph::Component {
     }
   }
 
-  void vote(const std::string& species, tracking::Observation& observation) {
-    auto name = std::ranges::find(species_names_, species);
-    if (name == species_names_.end()) {
-      if (species_names_.size() == kMaxSpecies) {
-        context_.warn("species_beyond_the_limit",
-                      "more than 32 species; '" + species + "' is not used");
-        return;
-      }
-      name = species_names_.insert(species_names_.end(), species);
+  std::vector<float> species_of(const furrow_msgs::msg::PlantInstance& instance) {
+    bool overflow = false;
+    std::vector<float> probability = species_.take(instance.species(), overflow);
+    if (overflow) {
+      context_.warn("species_beyond_the_limit", "more than " + std::to_string(SpeciesNames::kMost) +
+                                                    " species; the others count as unknown");
     }
-    observation.species_probability.assign(kMaxSpecies, 0.0F);
-    observation.species_probability[static_cast<std::size_t>(name - species_names_.begin())] = 1.0F;
+    return probability;
   }
 
   void publish() const {
@@ -233,16 +230,14 @@ class TrackerComponent final : public graph::Component {
     furrow_msgs::msg::Tracks message;
     message.header(header(*newest_used_, kFieldFrame));
     for (const tracking::Track& track : tracker_.tracks()) {
-      message.tracks().push_back(to_msg(track, species_names_));
+      message.tracks().push_back(to_msg(track, species_));
     }
     // A deleted track is published once more, so that its readers can forget it.
     for (const tracking::Track& track : tracker_.ended()) {
-      message.tracks().push_back(to_msg(track, species_names_));
+      message.tracks().push_back(to_msg(track, species_));
     }
     out_.publish(std::move(message));
   }
-
-  static constexpr std::size_t kMaxSpecies = 32;
 
   graph::Context& context_;
   Parameters parameters_;
@@ -258,7 +253,7 @@ class TrackerComponent final : public graph::Component {
   std::deque<std::shared_ptr<const furrow_msgs::msg::PlantInstances>> waiting_;
   std::deque<std::pair<Time, Eigen::Matrix3d>> covariances_;
   std::vector<tracking::Track> deleted_;  ///< for the field model; empty where none is saved
-  std::vector<std::string> species_names_;
+  SpeciesNames species_;
 };
 
 }  // namespace

@@ -62,7 +62,10 @@ Track weed(std::int64_t id, double x_m, double y_m, const std::string& species =
   track.position(to_point(Eigen::Vector2d(x_m, y_m)));
   track.area_mm2(500.0);
   track.radius_m(0.015);
-  track.species(species);
+  track.species().resize(1);
+  track.species()[0].species(species);
+  track.species()[0].crop(species == "sugar_beet");
+  track.species()[0].probability(1.0F);
   return track;
 }
 
@@ -226,6 +229,49 @@ TEST(PlannerComponent, EveryWeedThatIsLeftHasAReason) {
   EXPECT_EQ(found, expected);
 }
 
+TEST(PlannerComponent, SaysWhatAWeedIsWorthAndWhy) {
+  World world;
+  world.seconds = 1.0;
+  // Two thirds thistle (beta 1), one third speedwell (beta 0.2) given that it is a weed.
+  Track unsure_species = weed(1, 0.9, 0.0);
+  unsure_species.species().resize(3);
+  const std::vector<std::pair<std::string, float>> shares = {
+      {"thistle", 0.4F}, {"sugar_beet", 0.4F}, {"speedwell", 0.2F}};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    unsure_species.species()[i].species(shares[i].first);
+    unsure_species.species()[i].crop(shares[i].first == "sugar_beet");
+    unsure_species.species()[i].probability(shares[i].second);
+  }
+  unsure_species.leaves(4);
+  Track beet = crop(2, 0.9, 0.2);
+  beet.area_mm2(2000.0);
+  world.tracks = {unsure_species, beet};
+  run(world, {{"harmfulness_scheme", std::string("kappa")}});
+  const auto appraisal = world.decisions().at(1).appraisal();
+  ASSERT_TRUE(appraisal.valid());
+  EXPECT_EQ(appraisal.species(), "thistle");
+  EXPECT_NEAR(appraisal.species_probability(), 2.0 / 3.0, 1e-6);
+  EXPECT_NEAR(appraisal.unknown_probability(), 0.0, 1e-6);
+  EXPECT_NEAR(appraisal.beta(), (2.0 * 1.0 + 0.2) / 3.0, 1e-6);
+  EXPECT_EQ(appraisal.leaves(), 4);
+  EXPECT_DOUBLE_EQ(appraisal.crop_distance_m(), 0.2);
+  EXPECT_DOUBLE_EQ(appraisal.crop_proximity(), 1.0 / (2000.0 * 0.2));
+  EXPECT_DOUBLE_EQ(appraisal.worth(), 500.0 * appraisal.beta() * appraisal.crop_proximity());
+}
+
+TEST(PlannerComponent, NeitherTreatsNorForgetsAPlantThatMayBeACrop) {
+  World world;
+  world.seconds = 1.0;
+  world.tracks = {weed(1, 0.9, 0.0), weed(2, 0.9, 0.3), weed(3, 0.901, 0.3)};
+  world.tracks[1].crop_probability(0.4);
+  run(world, {{"protection_zone_mm", 20.0}});
+  const auto decisions = world.decisions();
+  EXPECT_TRUE(decisions.at(1).decision() == DecisionKind::kTreat);
+  EXPECT_TRUE(decisions.at(2).decision() == DecisionKind::kUnsure);
+  EXPECT_TRUE(decisions.at(3).decision() == DecisionKind::kProtectedCrop);
+  EXPECT_FALSE(decisions.at(2).appraisal().valid());
+}
+
 TEST(PlannerComponent, InvalidTracksDoNotAffectOthers) {
   World world;
   world.tracks = {weed(1, 0.9, 0.0), weed(2, kNan, 0.0), weed(3, 1.0, 0.3), crop(4, 0.95, kNan),
@@ -332,10 +378,11 @@ TEST(PlannerComponent, RequestsALowerSpeedForWeedsThatTheAxesWouldNotReach) {
   EXPECT_GT(left, 0);
 }
 
-TEST(PlannerComponent, DoesNotGovernWithTheSegmentViewOrSpraysInPassing) {
+TEST(PlannerComponent, RefusesParametersThatContradictEachOther) {
   World world;
   EXPECT_THROW(run(world, {{"govern_speed", true}, {"view", std::string("segment")}}), ConfigError);
   EXPECT_THROW(run(world, {{"govern_speed", true}, {"fire_while_moving", true}}), ConfigError);
+  EXPECT_THROW(run(world, {{"unsure_threshold", 0.6}}), ConfigError);
 }
 
 TEST(PlannerComponent, NoTracksGiveAnEmptyPlan) {

@@ -46,9 +46,10 @@ TEST(RunRecordConversion, TreatNamesItsAxis) {
 }
 
 TEST(RunRecordConversion, EveryOtherDecisionLeavesForTheReasonOfTheSameName) {
-  for (const auto kind : {DecisionKind::kUnreachable, DecisionKind::kLowPriority,
-                          DecisionKind::kProtectedCrop, DecisionKind::kOutside,
-                          DecisionKind::kStale, DecisionKind::kFault, DecisionKind::kUnconfirmed}) {
+  for (const auto kind :
+       {DecisionKind::kUnreachable, DecisionKind::kLowPriority, DecisionKind::kProtectedCrop,
+        DecisionKind::kOutside, DecisionKind::kStale, DecisionKind::kFault,
+        DecisionKind::kUnconfirmed, DecisionKind::kUnsure}) {
     const auto record = from_msg(record_of(kind), kAxes);
     ASSERT_TRUE(record.ok());
     EXPECT_EQ(record->decisions[0].action, Action::kLeave);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "furrow_components/observation_conversion.hpp"
+#include "furrow_components/track_conversion.hpp"
 #include "furrow_components/track_field.hpp"
 #include "furrow_core/file.hpp"
 #include "furrow_field/field_csv.hpp"
@@ -114,6 +115,14 @@ tracking::Track track(std::uint64_t id, double x_m, double y_m, double crop) {
   return track;
 }
 
+furrow_msgs::msg::SpeciesProbability share(const std::string& name, bool crop, float probability) {
+  furrow_msgs::msg::SpeciesProbability species;
+  species.species(name);
+  species.crop(crop);
+  species.probability(probability);
+  return species;
+}
+
 std::vector<tracking::Track> tracks() {
   std::vector<tracking::Track> tracks;
   for (std::uint64_t i = 0; i < 6; ++i) {
@@ -132,7 +141,10 @@ std::vector<tracking::Track> tracks() {
 TEST(TrackField, HasTheConfirmedTracksOfTheField) {
   TrackFieldParameters parameters;
   parameters.length_m = 5.0;
-  const std::vector<std::string> species = {"violet", "thistle"};
+  SpeciesNames species;
+  bool overflow = false;
+  (void)species.take(std::vector{share("violet", false, 0.5F), share("thistle", false, 0.5F)},
+                     overflow);
   const field::FieldModel field = field_of_tracks(tracks(), species, parameters);
   EXPECT_TRUE(field::validate(field).ok());
   ASSERT_EQ(field.plants.size(), 8u);
@@ -145,6 +157,51 @@ TEST(TrackField, HasTheConfirmedTracksOfTheField) {
     EXPECT_EQ(plant.species, species_name);
     EXPECT_EQ(plant.kind, plant.id <= 6 ? field::PlantKind::kCrop : field::PlantKind::kWeed);
   }
+}
+
+TEST(SpeciesNames, KeepTheirPlacesOverTheViews) {
+  SpeciesNames names;
+  bool overflow = false;
+  EXPECT_EQ(
+      names.take(std::vector{share("thistle", false, 0.7F), share("beet", true, 0.2F)}, overflow),
+      (std::vector{0.7F, 0.2F}));
+  // A crop of the same name is another entry.
+  EXPECT_EQ(
+      names.take(std::vector{share("beet", false, 0.1F), share("thistle", false, 0.4F)}, overflow),
+      (std::vector{0.4F, 0.0F, 0.1F}));
+  EXPECT_TRUE(names.take({}, overflow).empty());
+  EXPECT_FALSE(overflow);
+  ASSERT_EQ(names.entries().size(), 3U);
+  EXPECT_TRUE(names.entries()[1].crop);
+}
+
+TEST(SpeciesNames, LeaveOutWhatIsBeyondTheLimit) {
+  std::vector<furrow_msgs::msg::SpeciesProbability> all;
+  for (std::size_t i = 0; i <= SpeciesNames::kMost; ++i) {
+    all.push_back(share("species_" + std::to_string(i), false, 0.01F));
+  }
+  SpeciesNames names;
+  bool overflow = false;
+  EXPECT_EQ(names.take(all, overflow).size(), SpeciesNames::kMost);
+  EXPECT_TRUE(overflow);
+}
+
+TEST(TrackConversion, TellsTheSpeciesMostProbableFirst) {
+  SpeciesNames names;
+  bool overflow = false;
+  (void)names.take(std::vector{share("thistle", false, 0.5F), share("beet", true, 0.2F),
+                               share("foxtail", false, 0.2F)},
+                   overflow);
+  tracking::Track seen = track(1, 0.5, 0.0, 0.1);
+  seen.species_probability = {0.3F, 0.002F, 0.6F};
+  seen.leaves = 3.6;
+  const auto message = to_msg(seen, names);
+  ASSERT_EQ(message.species().size(), 2U) << "less than 0.5 % is left out";
+  EXPECT_EQ(message.species()[0].species(), "foxtail");
+  EXPECT_EQ(message.species()[0].probability(), 0.6F);
+  EXPECT_FALSE(message.species()[0].crop());
+  EXPECT_EQ(message.species()[1].species(), "thistle");
+  EXPECT_EQ(message.leaves(), 4);
 }
 
 TEST(TrackField, IsWrittenAndReadBack) {

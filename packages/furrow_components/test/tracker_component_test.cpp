@@ -156,6 +156,33 @@ void expect_views_unused(World& world, const std::string& counter) {
   EXPECT_LE(world.newest_stamp_s(), kFault_s);
 }
 
+TEST(TrackerComponent, FusesTheSpeciesForThePlanner) {
+  World world;
+  world.spoil_images = [](furrow_msgs::msg::PlantInstances& message) {
+    for (auto& weed : message.instances()) {
+      weed.species().resize(2);
+      weed.species()[0].species("foxtail");
+      weed.species()[0].probability(0.4F);
+      weed.species()[1].species("thistle");
+      weed.species()[1].probability(0.5F);
+      weed.leaves(4);
+    }
+    return true;
+  };
+  run(world);
+  ASSERT_FALSE(world.tracks.back().tracks().empty());
+  const auto& track = world.tracks.back().tracks().back();
+  ASSERT_EQ(track.species().size(), 2U);
+  EXPECT_EQ(track.species()[0].species(), "thistle");
+  EXPECT_GT(track.species()[0].probability(), 0.5F) << "several views are surer than one";
+  EXPECT_EQ(track.leaves(), 4);
+  std::size_t appraised = 0;
+  for (const auto& decision : world.plans.back().decisions()) {
+    if (decision.appraisal().valid() && decision.appraisal().species() == "thistle") ++appraised;
+  }
+  EXPECT_GT(appraised, 0U);
+}
+
 TEST(TrackerComponent, ImagesWithoutOdometryAreDropped) {
   World world;
   world.spoil = [](Odometry&) { return false; };

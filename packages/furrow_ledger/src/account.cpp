@@ -33,7 +33,8 @@ auto key(const TrackView& t) {
   return std::make_tuple(t.id, t.p_F_m.x(), t.p_F_m.y(), t.kind, t.confirmed, t.radius_m);
 }
 auto key(const Decision& d) {
-  return std::make_tuple(d.track_id, d.time.count_ns(), d.action, d.reason, d.axis);
+  return std::make_tuple(d.track_id, d.time.count_ns(), d.action, d.reason, d.axis,
+                         d.appraisal ? d.appraisal->worth : -1.0);
 }
 auto key(const Plant& p) {
   return std::make_tuple(p.p_F_m.x(), p.id);
@@ -235,7 +236,8 @@ class Accountant {
     const Sprayed& sprayed = sprayed_[i];
     const bool landed = sprayed.landed != kNoIndex;
     const std::size_t by = landed ? sprayed.landed : sprayed.aimed;
-    if (const Decision* led = by == kNoIndex ? decision : decision_behind(sprays_[by], i)) {
+    const Decision* led = by == kNoIndex ? decision : decision_behind(sprays_[by], i);
+    if (led != nullptr) {
       row.action = led->action;
       if (led->action == Action::kTreat) row.axis = led->axis;
     }
@@ -258,7 +260,25 @@ class Accountant {
       row.track_kind = tracks_[track].kind;
       row.track_distance_m = association_.distance_m[i];
     }
+    set_seen(i, led, row);
     return row;
+  }
+
+  /// What the robot took the plant for: of the decision that led to the outcome, or where that one
+  /// has no appraisal, of the latest that has one.
+  void set_seen(std::size_t plant, const Decision* led, LedgerRow& row) const {
+    const std::size_t track = association_.track_of_plant[plant];
+    if (track == kNoIndex) return;
+    if (led != nullptr) row.appraisal = led->appraisal;
+    for (const Decision& decision : decisions_of(tracks_[track].id)) {
+      if (led != nullptr && led->appraisal) break;
+      if (decision.appraisal) row.appraisal = decision.appraisal;
+    }
+    const TrackView& view = tracks_[track];
+    row.seen_species = row.appraisal ? row.appraisal->species : view.species;
+    const double probability =
+        row.appraisal ? row.appraisal->species_probability : view.species_probability;
+    if (!row.seen_species.empty()) row.seen_probability = probability;
   }
 
   void summarise() {

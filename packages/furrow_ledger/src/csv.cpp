@@ -1,4 +1,6 @@
-#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 
 #include "furrow_ledger/ledger.hpp"
 #include "furrow_ledger/markup.hpp"
@@ -16,12 +18,21 @@ std::string field_text(std::string_view text) {
   return quoted + "\"";
 }
 
+/// The shortest decimal that reads back as the same number: worths can be computed again.
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
 }  // namespace
 
 std::string to_csv(const Ledger& ledger) {
   std::string csv =
       "plant_id,kind,species,x_m,y_m,radius_m,area_mm2,outcome,reason,decision,axis,spray_time_s,"
-      "spray_distance_mm,track_id,track_kind,track_distance_mm\n";
+      "spray_distance_mm,track_id,track_kind,track_distance_mm,seen_species,seen_probability,"
+      "unknown_probability,seen_area_mm2,seen_leaves,beta,class_weight,crop_distance_m,"
+      "crop_proximity_per_mm2_m,worth_scheme,worth,worth_threshold\n";
   for (const LedgerRow& row : ledger.rows) {
     const auto cell = [&csv](std::string_view text) {
       csv += field_text(text);
@@ -43,6 +54,22 @@ std::string to_csv(const Ledger& ledger) {
     cell(row.track_id ? std::to_string(*row.track_id) : "");
     cell(row.track_kind ? to_string(*row.track_kind) : "");
     cell(row.track_distance_m ? fixed(*row.track_distance_m * 1e3, 2) : "");
+    cell(row.seen_species);
+    cell(row.seen_probability ? shortest(*row.seen_probability) : "");
+    const Appraisal appraisal = row.appraisal.value_or(Appraisal());
+    const auto appraised = [&](double value) { cell(row.appraisal ? shortest(value) : ""); };
+    appraised(appraisal.unknown_probability);
+    appraised(appraisal.area_mm2);
+    cell(appraisal.leaves > 0 ? std::to_string(appraisal.leaves) : "");
+    appraised(appraisal.beta);
+    appraised(appraisal.class_weight);
+    cell(row.appraisal && std::isfinite(appraisal.crop_distance_m)
+             ? shortest(appraisal.crop_distance_m)
+             : "");
+    appraised(appraisal.crop_proximity);
+    cell(appraisal.scheme);
+    appraised(appraisal.worth);
+    appraised(appraisal.threshold);
     csv.back() = '\n';
   }
   return csv;

@@ -25,7 +25,9 @@ constexpr std::array<ReasonText, kReasonCount> kReasons = {{{"", ""},
                                                             {"O", "outside the reach"},
                                                             {"F", "fault"},
                                                             {"P", "spray misplaced"},
-                                                            {"E", "end of the run"}}};
+                                                            {"E", "end of the run"},
+                                                            {"I", "tool raised or off"},
+                                                            {"A", "may be a crop"}}};
 
 /// Leaves around a stem, in a circle of radius 1.
 void draw_rosette(Markup& svg, std::string_view id, int leaves, double width) {

@@ -8,7 +8,7 @@ namespace {
 constexpr std::array<std::string_view, kReasonCount> kReasonNames = {
     "none",           "undetected",  "unconfirmed", "misclassified", "low_priority",
     "protected_crop", "unreachable", "stale",       "outside",       "fault",
-    "placement",      "end_of_run",  "inactive"};
+    "placement",      "end_of_run",  "inactive",    "unsure"};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::optional<Reason> reason_from_string(std::string_view name) {
 
 bool is_vision_loss(Reason reason) {
   return reason == Reason::kUndetected || reason == Reason::kUnconfirmed ||
-         reason == Reason::kMisclassified;
+         reason == Reason::kMisclassified || reason == Reason::kUnsure;
 }
 
 std::string_view to_string(Action action) {

@@ -103,14 +103,19 @@ std::vector<std::string> axis_charts(const Summary& s) {
   return {to_svg(sprays), to_svg(travel)};
 }
 
+std::string seen_as(const LedgerRow& row) {
+  if (!row.seen_probability) return "";
+  return row.seen_species + " " + percent(100.0 * *row.seen_probability);
+}
+
 ReportTable missed_table(const Ledger& ledger) {
   ReportTable table;
-  table.header = {"weed",  "species", "x, m",     "y, m",
+  table.header = {"weed",  "species", "seen as",  "x, m",          "y, m",
                   "cause", "track",   "decision", "spray, mm away"};
   for (const LedgerRow& row : ledger.rows) {
     if (row.kind != field::PlantKind::kWeed || row.outcome != Outcome::kMissed) continue;
     if (table.rows.size() == kMostRows) break;
-    table.rows.push_back({count(row.plant_id), row.species, fixed(row.p_F_m.x(), 2),
+    table.rows.push_back({count(row.plant_id), row.species, seen_as(row), fixed(row.p_F_m.x(), 2),
                           fixed(row.p_F_m.y(), 2), std::string(reason_phrase(row.reason)),
                           row.track_id ? count(*row.track_id) : "",
                           row.action == Action::kNone ? "" : std::string(to_string(row.action)),

@@ -88,8 +88,31 @@ TEST(Json, UnmeasuredIsNullAndStrangeNamesSurvive) {
 TEST(Csv, OneLineForEveryPlant) {
   EXPECT_EQ(to_csv(small_ledger()),
             "plant_id,kind,species,x_m,y_m,radius_m,area_mm2,outcome,reason,decision,axis,"
-            "spray_time_s,spray_distance_mm,track_id,track_kind,track_distance_mm\n"
-            "5,weed,beet,0.5000,-0.2500,0.0120,400.0,accurate,,,1,1.5000,6.00,3,weed,2.00\n");
+            "spray_time_s,spray_distance_mm,track_id,track_kind,track_distance_mm,seen_species,"
+            "seen_probability,unknown_probability,seen_area_mm2,seen_leaves,beta,class_weight,"
+            "crop_distance_m,crop_proximity_per_mm2_m,worth_scheme,worth,worth_threshold\n"
+            "5,weed,beet,0.5000,-0.2500,0.0120,400.0,accurate,,,1,1.5000,6.00,3,weed,2.00"
+            ",,,,,,,,,,,,\n");
+}
+
+TEST(Csv, SaysWhatThePlannerMadeOfAPlant) {
+  Ledger ledger = small_ledger();
+  ledger.rows[0].seen_species = "thistle";
+  ledger.rows[0].seen_probability = 0.1 + 0.2;  // 0.30000000000000004: read back as it was
+  ledger.rows[0].appraisal = Appraisal{.scheme = "kappa",
+                                       .species = "thistle",
+                                       .species_probability = 0.1 + 0.2,
+                                       .area_mm2 = 400.0,
+                                       .leaves = 4,
+                                       .beta = 0.5,
+                                       .class_weight = 1.0,
+                                       .crop_distance_m = 0.25,
+                                       .crop_proximity = 0.002,
+                                       .worth = 0.4,
+                                       .threshold = 0.1};
+  EXPECT_NE(to_csv(ledger).find(",2.00,thistle,0.30000000000000004,0,400,4,0.5,1,0.25,0.002,kappa,"
+                                "0.4,0.1\n"),
+            std::string::npos);
 }
 
 TEST(Csv, QuotesNamesThatNeedIt) {

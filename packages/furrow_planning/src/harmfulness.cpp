@@ -153,42 +153,49 @@ Result<Harmfulness> HarmfulnessModel::weigh(const WeedPhenotype& weed,
   }
   double unknown = 0.0;
   const Factors by_species = factors(distribution, unknown);
-  Harmfulness result{.beta = by_species.beta};
-  result.leave = parameters_.unknown_species == "leave" && unknown > 0.5;
+  Harmfulness result{.beta = by_species.beta,
+                     .class_weight = by_species.class_weight,
+                     .unknown_probability = unknown};
+  for (const SpeciesShare& share : distribution) {
+    if (share.species.empty() || !(share.probability > result.species_probability)) continue;
+    result.species = share.species;
+    result.species_probability = share.probability;
+  }
+  set_proximity(weed, crops, result);
   if (parameters_.scheme == "uniform") {
     result.weight = 1.0;
   } else if (parameters_.scheme == "class") {
-    result.weight = by_species.class_weight;
+    result.weight = result.class_weight;
   } else {
-    result.weight = kappa(weed, by_species.beta, crops);
+    result.weight = weed.area_mm2 * result.beta * result.crop_proximity;
   }
-  result.leave = result.leave || result.weight < parameters_.left_standing_below;
+  result.leave = (parameters_.unknown_species == "leave" && unknown > 0.5) ||
+                 result.weight < parameters_.left_standing_below;
   return result;
 }
 
-double HarmfulnessModel::kappa(const WeedPhenotype& weed, double beta,
-                               std::span<const CropPhenotype> crops) const {
-  double nearest_m = std::numeric_limits<double>::infinity();
+void HarmfulnessModel::set_proximity(const WeedPhenotype& weed,
+                                     std::span<const CropPhenotype> crops,
+                                     Harmfulness& result) const {
+  result.crop_distance_m = std::numeric_limits<double>::infinity();
   double of_nearest = 0.0;
   double of_all = 0.0;
   for (const CropPhenotype& crop : crops) {
     const double distance_m = (crop.p_F - weed.p_F).norm();
-    if (distance_m > parameters_.crop_range_m) {
-      continue;
-    }
+    if (distance_m > parameters_.crop_range_m) continue;
     const double area_mm2 = crop.area_mm2 > 0.0 ? crop.area_mm2 : parameters_.no_crop_area_mm2;
-    const double value =
-        weed.area_mm2 * beta / (area_mm2 * std::max(distance_m, parameters_.min_distance_m));
+    const double value = 1.0 / (area_mm2 * std::max(distance_m, parameters_.min_distance_m));
     of_all += value;
-    if (distance_m < nearest_m) {
-      nearest_m = distance_m;
+    if (distance_m < result.crop_distance_m) {
+      result.crop_distance_m = distance_m;
       of_nearest = value;
     }
   }
-  if (!std::isfinite(nearest_m)) {
-    return weed.area_mm2 * beta / (parameters_.no_crop_area_mm2 * parameters_.no_crop_distance_m);
+  if (!std::isfinite(result.crop_distance_m)) {
+    of_nearest = 1.0 / (parameters_.no_crop_area_mm2 * parameters_.no_crop_distance_m);
+    of_all = of_nearest;
   }
-  return parameters_.crops == "all" ? of_all : of_nearest;
+  result.crop_proximity = parameters_.crops == "all" ? of_all : of_nearest;
 }
 
 }  // namespace furrow::planning

@@ -14,6 +14,7 @@ namespace {
 constexpr double kMaxPosition_m = 1e7;
 constexpr double kMaxRadius_m = 10.0;
 constexpr std::size_t kMaxSpecies = 1024;
+constexpr std::int32_t kMaxLeaves = 255;
 
 bool within(double value, double low, double high) {
   return value >= low && value <= high;
@@ -45,12 +46,14 @@ void fuse_size(Track& track, const Observation& seen, double memory_views) {
   if (seen.truncated) {
     track.radius_m = std::max(track.radius_m, seen.radius_m);
     track.area_mm2 = std::max(track.area_mm2, seen.area_mm2);
+    track.leaves = std::max(track.leaves, static_cast<double>(seen.leaves));
     return;
   }
   ++track.whole_views;
   const double share = 1.0 / std::min<double>(track.whole_views, memory_views);
   track.radius_m += share * (seen.radius_m - track.radius_m);
   track.area_mm2 += share * (seen.area_mm2 - track.area_mm2);
+  if (seen.leaves > 0) track.leaves += share * (seen.leaves - track.leaves);
   if (!seen.footprint.empty()) track.footprint = seen.footprint;
 }
 
@@ -74,7 +77,9 @@ bool is_valid(const Observation& o) {
                            o.class_probability[0] + o.class_probability[1] > 0.0;
   const bool species =
       o.species_probability.size() <= kMaxSpecies && is_distribution(o.species_probability);
-  return position && covariance && size && within(o.score, 0.0, 1.0) && plant_class && species;
+  const bool leaves = o.leaves >= 0 && o.leaves <= kMaxLeaves;
+  return position && covariance && size && within(o.score, 0.0, 1.0) && plant_class && species &&
+         leaves;
 }
 
 bool is_covariance(const Eigen::Matrix3d& covariance) {
@@ -143,6 +148,7 @@ void absorb(Track& kept, const Track& other, const TrackerParameters& parameters
   if (other.last_seen > kept.last_seen && other.whole_views > 0) {
     kept.radius_m = other.radius_m;
     kept.area_mm2 = other.area_mm2;
+    kept.leaves = other.leaves;
     kept.footprint = other.footprint;
     kept.recent_displacement_m = other.recent_displacement_m;
   }

@@ -2,8 +2,8 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
+#include "furrow_components/species_names.hpp"
 #include "furrow_core/parameters.hpp"
 #include "furrow_core/result.hpp"
 #include "furrow_field/field_model.hpp"
@@ -24,9 +24,9 @@ struct TrackFieldParameters {
 /// The field as the robot saw it: each confirmed track with x in [0, length_m] is a plant. The
 /// width is the least that holds them all. Crop rows are groups of at least five crops, more than
 /// 0.2 m across from the next crop. A track without a species gets the parameters' name for its
-/// kind. `species` names the tracks' votes.
+/// kind. `species` is the table of the tracks' species.
 [[nodiscard]] field::FieldModel field_of_tracks(std::span<const tracking::Track> tracks,
-                                                std::span<const std::string> species,
+                                                const SpeciesNames& species,
                                                 const TrackFieldParameters& parameters);
 
 /// Writes the field whole or not at all, by the extension of the file.

@@ -52,6 +52,10 @@ struct LedgerRow {
   std::optional<std::int64_t> track_id;
   std::optional<field::PlantKind> track_kind;
   std::optional<double> track_distance_m;
+  std::string seen_species;  ///< of the appraisal, else of the track; empty: none
+  std::optional<double> seen_probability;
+  /// Of the decision, or else the last one on the track.
+  std::optional<Appraisal> appraisal;
 };
 
 /// The figures of one run. Percentages are of all weeds; 0 when there are none.

@@ -29,12 +29,13 @@ enum class Reason : std::uint8_t {
   kPlacement,      ///< sprayed at, but the spray landed beside it
   kEndOfRun,       ///< the run ended before a tool came over it, or started beyond it
   kInactive,       ///< the tool was raised or switched off
+  kUnsure,         ///< too likely a crop to be treated
 };
-inline constexpr std::size_t kReasonCount = 13;
+inline constexpr std::size_t kReasonCount = 14;
 
 [[nodiscard]] std::string_view to_string(Reason reason);  ///< "low_priority"
 [[nodiscard]] std::optional<Reason> reason_from_string(std::string_view name);
-/// True for undetected, unconfirmed and misclassified.
+/// True for undetected, unconfirmed, misclassified and unsure.
 [[nodiscard]] bool is_vision_loss(Reason reason);
 
 /// One opening of a valve: what reached the ground, and what was meant.
@@ -55,9 +56,28 @@ struct TrackView {
   Eigen::Vector2d p_F_m = Eigen::Vector2d::Zero();  ///< the stem
   field::PlantKind kind = field::PlantKind::kWeed;  ///< fused class
   bool confirmed = false;
-  std::string species;    ///< may be empty
+  std::string species;  ///< the most probable of its kind; may be empty
+  double species_probability = 0.0;
+  int leaves = 0;         ///< growth stage; 0: not known
   double radius_m = 0.0;  ///< may be 0: not known
   double area_mm2 = 0.0;
+};
+
+/// How the planner valued the treatment of a weed. By the scheme "kappa" the worth is
+/// area_mm2 * beta * crop_proximity; by "class" it is class_weight.
+struct Appraisal {
+  std::string scheme;
+  std::string species;  ///< the most probable weed; empty: unknown
+  double species_probability = 0.0;
+  double unknown_probability = 0.0;  ///< of species that the planner's table does not have
+  double area_mm2 = 0.0;
+  int leaves = 0;
+  double beta = 0.0;             ///< expected over the species
+  double class_weight = 0.0;     ///< likewise
+  double crop_distance_m = 0.0;  ///< to the nearest crop in range; infinite: none
+  double crop_proximity = 0.0;   ///< sum of 1 / (crop area x distance), in 1/(mm2 m)
+  double worth = 0.0;
+  double threshold = 0.0;  ///< weeds of less worth are left standing
 };
 
 enum class Action : std::uint8_t {
@@ -76,6 +96,7 @@ struct Decision {
   Action action = Action::kNone;
   Reason reason = Reason::kNone;  ///< of kLeave
   int axis = -1;                  ///< of kTreat
+  std::optional<Appraisal> appraisal = {};
 };
 
 /// Where a nozzle went over the ground, for drawing.

@@ -56,11 +56,18 @@ struct CropPhenotype {
   double area_mm2 = 0.0;
 };
 
-/// The worth of treating a weed.
+/// The worth of treating a weed, and what it was computed from.
 struct Harmfulness {
+  /// Of scheme uniform 1, of class class_weight, of kappa area x beta x crop_proximity.
   double weight = 0.0;
-  bool leave = false;  ///< below the threshold, or an unknown species under the policy "leave"
-  double beta = 0.0;   ///< expected over the species, with caution
+  bool leave = false;         ///< below the threshold, or an unknown species under policy "leave"
+  double beta = 0.0;          ///< expected over the species, with caution
+  double class_weight = 0.0;  ///< likewise
+  std::string_view species;   ///< the most probable one; empty: none of more than nothing
+  double species_probability = 0.0;
+  double unknown_probability = 0.0;  ///< of species that the table does not have
+  double crop_distance_m = 0.0;      ///< to the nearest crop in range; infinite: none
+  double crop_proximity = 0.0;       ///< sum of 1 / (crop area x distance), in 1/(mm2 m)
 };
 
 /// Weighs weeds by the chosen scheme: "uniform" (all 1), "class" (by species: the paper's 0.1 and
@@ -87,8 +94,8 @@ class HarmfulnessModel {
     double class_weight = 0.0;
   };
   [[nodiscard]] Factors factors(std::span<const SpeciesShare> distribution, double& unknown) const;
-  [[nodiscard]] double kappa(const WeedPhenotype& weed, double beta,
-                             std::span<const CropPhenotype> crops) const;
+  void set_proximity(const WeedPhenotype& weed, std::span<const CropPhenotype> crops,
+                     Harmfulness& result) const;
   HarmfulnessParameters parameters_;
   Factors unknown_;  ///< by the policy
 };

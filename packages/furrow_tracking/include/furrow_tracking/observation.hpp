@@ -30,7 +30,8 @@ struct Observation {
   /// P(species | this view) by the caller's species table. The rest to 1 belongs to species that
   /// this view does not name. Empty when not known.
   std::vector<float> species_probability = {};
-  bool truncated = false;  ///< cut by the image's border: radius and area are lower bounds
+  std::int32_t leaves = 0;  ///< growth stage; 0: not known
+  bool truncated = false;   ///< cut by the image's border: radius and area are lower bounds
   GroundMask footprint = {};
 };
 

@@ -41,7 +41,8 @@ struct Track {
   Eigen::Matrix2d covariance_F_m2 = Eigen::Matrix2d::Identity();
   double radius_m = 0.0;
   double area_mm2 = 0.0;
-  double score = 0.0;  ///< mean over its views
+  double leaves = 0.0;  ///< growth stage; 0: not known
+  double score = 0.0;   ///< mean over its views
   /// P(class | all views, and the place across the rows where that is asked for), by PlantClass.
   std::array<double, kPlantClasses> class_probability = {0.5, 0.5};
   double class_log_odds = 0.0;  ///< of crop to weed, by the views alone
