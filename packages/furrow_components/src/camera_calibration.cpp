@@ -1,4 +1,4 @@
-#include "camera_calibration.hpp"
+#include "furrow_components/camera_calibration.hpp"
 
 #include <algorithm>
 

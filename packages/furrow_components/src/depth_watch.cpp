@@ -1,10 +1,8 @@
 #include "depth_watch.hpp"
 
 #include <cmath>
-#include <span>
-#include <vector>
 
-#include "furrow_core/statistics.hpp"
+#include "furrow_components/image_conversions.hpp"
 #include "furrow_core/text.hpp"
 
 namespace furrow::components {
@@ -16,16 +14,7 @@ constexpr double kContradiction = 0.2;
 }  // namespace
 
 void DepthWatch::measured(const cv::Mat& depth_m) {
-  constexpr int kStep = 8;  // a sample is enough
-  std::vector<float> depths_m;
-  for (int v = 0; v < depth_m.rows; v += kStep) {
-    const auto* row = depth_m.ptr<float>(v);
-    for (int u = 0; u < depth_m.cols; u += kStep) {
-      if (std::isfinite(row[u]) && row[u] > 0.0F) depths_m.push_back(row[u]);
-    }
-  }
-  median_m_.reset();
-  if (!depths_m.empty()) median_m_ = median_element(std::span(depths_m));
+  median_m_ = median_depth_m(depth_m);
 }
 
 std::string DepthWatch::missing() const {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <span>
 #include <string_view>
 
 #include "furrow_components/conversions.hpp"
+#include "furrow_core/statistics.hpp"
 
 namespace furrow::components {
 namespace {
@@ -131,6 +134,19 @@ Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message, double unit_m
   cv::Mat depth_m;
   view->convertTo(depth_m, CV_32F, unit_m);
   return depth_m;
+}
+
+std::optional<double> median_depth_m(const cv::Mat& depth_m) {
+  constexpr int kStep = 8;  // a sample is enough
+  std::vector<float> depths_m;
+  for (int v = 0; v < depth_m.rows; v += kStep) {
+    const auto* row = depth_m.ptr<float>(v);
+    for (int u = 0; u < depth_m.cols; u += kStep) {
+      if (std::isfinite(row[u]) && row[u] > 0.0F) depths_m.push_back(row[u]);
+    }
+  }
+  if (depths_m.empty()) return std::nullopt;
+  return median_element(std::span(depths_m));
 }
 
 std::vector<std::uint32_t> mask_runs(const cv::Mat& mask) {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "camera_calibration.hpp"
 #include "depth_watch.hpp"
+#include "furrow_components/camera_calibration.hpp"
 #include "furrow_components/conversions.hpp"
 #include "furrow_components/frame_pairing.hpp"
 #include "furrow_components/image_conversions.hpp"

@@ -1,4 +1,4 @@
-#include "../src/camera_calibration.hpp"
+#include "furrow_components/camera_calibration.hpp"
 
 #include <gtest/gtest.h>
 

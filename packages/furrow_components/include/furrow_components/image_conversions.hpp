@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ namespace furrow::components {
 /// millimetre by REP 118 and other with some cameras.
 [[nodiscard]] Result<cv::Mat> depth_m_of(const sensor_msgs::msg::Image& message,
                                          double unit_m = 1e-3);
+/// The median of a sample of the known depths of a CV_32FC1; empty: no pixel has a depth.
+[[nodiscard]] std::optional<double> median_depth_m(const cv::Mat& depth_m);
 
 /// Run lengths of a mask (8UC1, zero or not), row by row, starting with background.
 [[nodiscard]] std::vector<std::uint32_t> mask_runs(const cv::Mat& mask);
