@@ -66,6 +66,10 @@ std::vector<ExternalInput> external_inputs(const graph::GraphSpec& graph,
       const bool required = port.need == graph::Need::kRequired;
       if (!required && (!named.contains(topic) || port.topic->rate_hz == 0.0)) continue;
       ExternalInput& input = inputs[topic];
+      if (input.readers.empty()) {
+        input.port = port.topic->name;
+        input.qos = port.topic->qos;
+      }
       input.topic = topic;
       input.type = port.topic->type->dds_name;
       input.ros_type = port.topic->type->ros_name;

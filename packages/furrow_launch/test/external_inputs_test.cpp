@@ -64,7 +64,10 @@ TEST(ExternalInputs, AreThoseThatNoComponentPublishesAndThatHaveARate) {
 }
 
 TEST(ExternalInputs, HaveTheNameThatTheGraphGivesThem) {
-  EXPECT_EQ(inputs_of({{"camera/image", "front/color"}}).at(0).topic, "front/color");
+  const ExternalInput input = inputs_of({{"camera/image", "front/color"}}).at(0);
+  EXPECT_EQ(input.topic, "front/color");
+  EXPECT_EQ(input.port, "camera/image");
+  EXPECT_TRUE(input.qos.accept_best_effort);
 }
 
 TEST(InputWatch, NamesWhatIsNotHeardAndItsEffect) {

@@ -9,14 +9,17 @@
 #include "furrow_graph/graph_spec.hpp"
 #include "furrow_graph/health.hpp"
 #include "furrow_graph/registry.hpp"
+#include "furrow_msgs/qos.hpp"
 
 namespace furrow::launch {
 
 /// A topic that components of a graph read and none publishes: a driver of the robot has to.
 struct ExternalInput {
   std::string topic;
+  std::string port;                  ///< of its first reader: the topic's name before remaps
   std::string type;                  ///< name in DDS
   std::string ros_type;              ///< "sensor_msgs/msg/Image"
+  msgs::Qos qos;                     ///< as its first reader requests it
   bool required = false;             ///< at least one reader does not work without it
   std::vector<std::string> readers;  ///< components
 };
