@@ -16,6 +16,7 @@ void add_bench_vision_command(Command root);
 void add_calibrate_command(Command root);
 void add_dataset_commands(Command root);
 void add_detect_command(Command root);
+void add_doctor_command(Command root);
 void add_eval_planner_commands(Command root);
 void add_eval_tracking_command(Command root);
 void add_eval_trial_command(Command root);

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   add_calibrate_command(root);
   add_graph_commands(root);
   add_params_command(root);
+  add_doctor_command(root);
   add_dataset_commands(root);
   add_field_commands(root);
   add_field_import_command(root);

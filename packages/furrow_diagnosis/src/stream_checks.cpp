@@ -140,9 +140,12 @@ Findings check_rate(const TopicObservation& topic, double seconds) {
     findings.push_back({Rank::kRate, topic.topic, check, std::move(problem), std::move(remedy)});
   };
   const StreamFigures figures = figures_of(topic);
+  // One message in a short time says nothing.
+  constexpr double kExpected = 2.0;
+  const bool enough = figures.rate_hz || seconds * lowest_hz >= kExpected;
   const double rate_hz =
       figures.rate_hz.value_or(static_cast<double>(topic.times.size()) / seconds);
-  if (rate_hz < lowest_hz) {
+  if (enough && rate_hz < lowest_hz) {
     add("rate.low", fixed(rate_hz, 2) + " Hz; at least " + fixed(lowest_hz, 1) + " Hz are needed",
         "raise the rate of the driver");
   }

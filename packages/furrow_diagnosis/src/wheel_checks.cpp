@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "furrow_core/text.hpp"
 #include "furrow_diagnosis/diagnosis.hpp"
@@ -33,6 +34,34 @@ Way way_of(const std::vector<WheelSample>& wheels) {
   return way;
 }
 
+/// Lengths of the way while fixes came: of the fixes, and of the speed of the wheels.
+struct WayByGnss {
+  double gnss_m = 0.0;
+  double wheels_m = 0.0;
+};
+
+/// Empty: the fixes are not accurate enough to compare.
+std::optional<WayByGnss> way_by_gnss(const Observations& seen) {
+  constexpr double kAccurate_m2 = 0.05 * 0.05;
+  const bool accurate = std::ranges::all_of(seen.gnss, [](const GnssSample& fix) {
+    const Eigen::Vector2d variances_m2 = fix.covariance_m2.diagonal();
+    return fix.status >= 0 && fix.covariance_known && fix.p_FA_m.allFinite() &&
+           variances_m2.minCoeff() > 0.0 && variances_m2.maxCoeff() <= kAccurate_m2;
+  });
+  if (!accurate || seen.gnss.size() < 2) return std::nullopt;
+  WayByGnss way;
+  for (std::size_t i = 1; i < seen.gnss.size(); ++i) {
+    way.gnss_m += (seen.gnss[i].p_FA_m - seen.gnss[i - 1].p_FA_m).norm();
+  }
+  for (std::size_t i = 1; i < seen.wheels.size(); ++i) {
+    const WheelSample& a = seen.wheels[i - 1];
+    const WheelSample& b = seen.wheels[i];
+    if (a.arrival < seen.gnss.front().arrival || b.arrival > seen.gnss.back().arrival) continue;
+    way.wheels_m += std::abs(a.speed_mps) * (b.arrival - a.arrival).to_seconds();
+  }
+  return way;
+}
+
 /// The unit that is `ratio` times as small as m/s; empty: none.
 std::string speed_unit(double ratio) {
   if (near_ratio(ratio, 3.6)) return "km/h";
@@ -57,7 +86,10 @@ class WheelCheck {
       return std::move(findings_);
     }
     check_position();
+    const std::size_t before = findings_.size();
     check_speed();
+    if (findings_.size() == before) check_speed_by_gnss();
+    if (findings_.size() == before) check_fastest();
     check_yaw_rate();
     check_frame();
     return std::move(findings_);
@@ -80,9 +112,6 @@ class WheelCheck {
 
   /// Needs stamps that can be used.
   void check_speed() {
-    constexpr double kFastest_mps = 5.0;
-    const WheelSample& fastest = *std::ranges::max_element(
-        seen_.wheels, {}, [](const WheelSample& sample) { return std::abs(sample.speed_mps); });
     const Way way = way_of(seen_.wheels);
     const bool compared = way.length_m > kShortestPath_m && check_stamps(topic_).empty();
     if (compared && std::abs(way.twist_m) < 0.02 * way.length_m) {
@@ -103,12 +132,32 @@ class WheelCheck {
     } else if (!near_ratio(ratio, 1.0)) {
       add(Rank::kValue, "wheels.speed_scale", compared_text,
           "check the wheel radius and the unit of twist.linear.x");
-    } else if (std::abs(fastest.speed_mps) > kFastest_mps) {
-      add(Rank::kValue, "wheels.speed_unit",
-          "the speed reaches " + fixed(fastest.speed_mps, 1) +
-              " m/s, which no weeding robot drives",
-          "publish m/s, not km/h or mm/s");
     }
+  }
+
+  /// Where poses and twist agree, both may have the wrong unit.
+  void check_speed_by_gnss() {
+    constexpr double kLongEnough_m = 1.5;  // beside noise, and a turning antenna
+    const auto way = way_by_gnss(seen_);
+    if (!way || std::max(way->gnss_m, way->wheels_m) < kLongEnough_m) return;
+    const double ratio = way->wheels_m / way->gnss_m;
+    if (near_ratio(ratio, 1.0)) return;
+    const std::string unit = speed_unit(ratio);
+    add(Rank::kValue, unit.empty() ? "wheels.against_gnss" : "wheels.speed_unit",
+        "the wheels say " + fixed(way->wheels_m, 2) + " m, the GNSS " + fixed(way->gnss_m, 2) +
+            " m" + (unit.empty() ? "" : ": the speed is in " + unit),
+        unit.empty() ? "check unit and wheel radius, and that the fixes are not repeated"
+                     : "publish m/s");
+  }
+
+  void check_fastest() {
+    constexpr double kFastest_mps = 5.0;
+    const WheelSample& fastest = *std::ranges::max_element(
+        seen_.wheels, {}, [](const WheelSample& sample) { return std::abs(sample.speed_mps); });
+    if (std::abs(fastest.speed_mps) <= kFastest_mps) return;
+    add(Rank::kValue, "wheels.speed_unit",
+        "the speed reaches " + fixed(fastest.speed_mps, 1) + " m/s, which no weeding robot drives",
+        "publish m/s, not km/h or mm/s");
   }
 
   void check_yaw_rate() {

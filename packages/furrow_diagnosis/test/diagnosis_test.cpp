@@ -45,6 +45,13 @@ TEST(Diagnosis, RemindsOfOtherHostsWhereAnInputHasNoWriter) {
   EXPECT_NE(notes[0].find("interfaces=ADDRESS"), std::string::npos);
 }
 
+TEST(Diagnosis, SaysNothingOfTheRateOfOneMessageInAShortTime) {
+  Observations seen = sound_sensors();
+  seen.seconds = 1.0;
+  seen.topics[kGnss].times.resize(1);
+  EXPECT_TRUE(diagnose(seen, sound_expectation()).findings.empty());
+}
+
 TEST(Diagnosis, PutsTheMoreFundamentalFirst) {
   Observations seen = sound_sensors();
   seen.topics[kImu].frame.clear();

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -55,10 +56,9 @@ class Drivers {
   }
 
   /// A hundred times a second.
-  void tick() {
+  void tick(Time stamp) {
     constexpr int kImage = 33;
     constexpr int kFix = 20;
-    const Time stamp = now();
     put(*imu_, imu(stamp));
     if (ticks_ % 2 == 0) put(*wheels_, wheels(stamp));
     if (ticks_ % kFix == 0) put(*fix_, fix(stamp));
@@ -133,9 +133,15 @@ int play(std::int64_t domain, const std::string& fault) {
   parameters.process_name = "drivers";
   dds::DdsTransport transport(parameters);
   Drivers drivers(transport, fault);
-  constexpr int kPeriod_ms = 10;
+  constexpr Duration kPeriod = Duration::milliseconds(10);
   pollfd input = {STDIN_FILENO, POLLIN, 0};
-  while (poll(&input, 1, kPeriod_ms) == 0) drivers.tick();
+  int timeout_ms = 0;
+  // Stamps are those of the plan, as sensors have them, however late this process runs.
+  for (Time next = now(); poll(&input, 1, timeout_ms) == 0; next += kPeriod) {
+    drivers.tick(next);
+    const double left_s = (next + kPeriod - now()).to_seconds();
+    timeout_ms = left_s > 0.0 ? static_cast<int>(std::ceil(1e3 * left_s)) : 0;
+  }
   return 0;
 }
 

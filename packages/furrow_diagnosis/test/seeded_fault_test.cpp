@@ -229,11 +229,30 @@ std::vector<Fault> wheel_faults() {
       {"wheels.no_twist", kWheels, "the twist is zero", speed(0.0)},
       {"wheels.speed_unit", kWheels, "18.0 m/s",
        [](Observations& s) {
+         s.gnss.clear();
          for_each_wheel(s, [](WheelSample& w) {
            w.position_m.setZero();
            w.speed_mps = 18.0;
          });
        }},
+      {"wheels.speed_unit", kWheels, "the GNSS 2.40 m: the speed is in mm/s",
+       [](Observations& s) {
+         for_each_wheel(s, [](WheelSample& w) {
+           w.position_m *= 1000.0;
+           w.speed_mps *= 1000.0;
+         });
+       }},
+      {"wheels.against_gnss", kWheels, "the wheels say 4.80 m, the GNSS 2.40 m",
+       [](Observations& s) {
+         for_each_wheel(s, [](WheelSample& w) {
+           w.position_m *= 2.0;
+           w.speed_mps *= 2.0;
+         });
+       }},
+      {"wheels.against_gnss", kWheels, "the GNSS 0.00 m",
+       [](Observations& s) { for_each_fix(s, [](GnssSample& fix) {
+                               fix.p_FA_m = {3.0, 1.0};
+                             }); }},
       {"wheels.yaw_rate_unit", kWheels, "deg/s",
        [](Observations& s) {
          for_each_wheel(s, [](WheelSample& w) { w.yaw_rate_radps *= kDegrees; });
@@ -262,9 +281,7 @@ std::vector<Fault> gnss_faults() {
          for_each_fix(s, [](GnssSample& fix) { fix.covariance_m2.setZero(); });
        }},
       {"gnss.origin", kGnss, "512.0 km",
-       [](Observations& s) {
-         for_each_fix(s, [](GnssSample& fix) { fix.p_FA_m = {512e3, 0.0}; });
-       }},
+       [](Observations& s) { for_each_fix(s, [](GnssSample& fix) { fix.p_FA_m.x() += 512e3; }); }},
       {"gnss.accuracy", kGnss, "2.00 m",
        [](Observations& s) {
          for_each_fix(s, [](GnssSample& fix) {
@@ -278,6 +295,11 @@ std::vector<Fault> gnss_faults() {
 std::vector<Fault> rate_faults() {
   return {
       {"rate.low", kWheels, "5.00 Hz", [](Observations& s) { thin(s.topics[kWheels], 10); }},
+      {"rate.low", kGnss, "0.20 Hz",
+       [](Observations& s) {
+         s.topics[kGnss].times.resize(1);
+         s.topics[kGnss].messages = 1;
+       }},
       {"rate.lost", kImu, "10 %",
        [](Observations& s) {
          auto& times = s.topics[kImu].times;

@@ -28,11 +28,9 @@ class SensorMessages {
                               components::kCameraFrame);
   }
   [[nodiscard]] nav_msgs::msg::Odometry wheels(Time stamp) const {
-    const double yaw_rad = kYawRate_radps * (stamp - start_).to_seconds();
-    const double radius_m = kSpeed_mps / kYawRate_radps;
     components::BaseOdometry base;
     base.stamp = stamp;
-    base.X_FB = {radius_m * std::sin(yaw_rad), radius_m * (1.0 - std::cos(yaw_rad)), yaw_rad};
+    base.X_FB = pose(stamp);
     base.speed_mps = kSpeed_mps;
     base.yaw_rate_radps = kYawRate_radps;
     return components::to_msg(base, "odom");
@@ -47,6 +45,7 @@ class SensorMessages {
   [[nodiscard]] sensor_msgs::msg::NavSatFix fix(Time stamp) const {
     localization::GnssPosition position;
     position.stamp = stamp;
+    position.p_FA_m = {pose(stamp).x_m, pose(stamp).y_m};
     position.covariance = 1e-4 * Eigen::Matrix2d::Identity();
     return components::Georeference({}).to_msg(position);
   }
@@ -54,6 +53,13 @@ class SensorMessages {
  private:
   static constexpr double kSpeed_mps = 0.5;
   static constexpr double kYawRate_radps = 0.3;
+
+  [[nodiscard]] geometry::Pose2 pose(Time stamp) const {
+    const double yaw_rad = kYawRate_radps * (stamp - start_).to_seconds();
+    const double radius_m = kSpeed_mps / kYawRate_radps;
+    return {radius_m * std::sin(yaw_rad), radius_m * (1.0 - std::cos(yaw_rad)), yaw_rad};
+  }
+
   Time start_;
   cv::Mat colour_;
 };

@@ -78,15 +78,10 @@ inline Observations sound_sensors() {
     const Drive drive{(times.stamp - kStart).to_seconds()};
     seen.imu.push_back({times.arrival, {0.0, 0.0, drive.yaw_rate_radps()}, {0.1, -0.1, 9.8}});
   }
-  for (const MessageTimes& times : seen.topics[5].times) {
-    seen.gnss.push_back({times.arrival,
-                         50.615,
-                         6.987,
-                         170.0,
-                         2,
-                         true,
-                         1e-4 * Eigen::Matrix2d::Identity(),
-                         {3.0, 1.0}});
+  // Ten samples of the wheels a fix.
+  for (std::size_t i = 0; i < seen.topics[5].times.size(); ++i) {
+    seen.gnss.push_back({seen.topics[5].times[i].arrival, 50.615, 6.987, 170.0, 2, true,
+                         1e-4 * Eigen::Matrix2d::Identity(), seen.wheels[10 * i].position_m});
   }
   return seen;
 }
