@@ -46,7 +46,8 @@ class BagTest(RecordingCase):
         whole = self.bag_info(self.recorded)["messages"]
         file = self.folder / "cut short.mcap"
         data = self.recorded.read_bytes()
-        for part in (0.9, 0.5):
+        # The last tenth of so short a file is its summary, without messages.
+        for part in (0.75, 0.5):
             with self.subTest(part):
                 file.write_bytes(data[:int(part * len(data))])
                 self.assertEqual(self.furrow("bag", "info", file).returncode, 1)
