@@ -206,6 +206,17 @@ class BadInputTest(FurrowCase):
     def test_ground_of_no_kind(self):
         self.assert_run_refused(["--ground", "moon"], "--ground", "'moon'")
 
+    def test_network_in_place_of_its_model_file(self):
+        (self.folder / "net.onnx").write_bytes(b"x" * (2 << 20))
+        self.assert_refused(["detect", "photo.png", "--model", "net.onnx"], "net.onnx: a network",
+                            "net.yaml")
+
+    def test_plants_on_one_line_have_no_density(self):
+        (self.folder / "line.csv").write_text("kind,x_m,y_m\ncrop,0,0\nweed,1,0\nweed,2,0\n")
+        done = self.furrow("field", "import", "line.csv", "--out", "field.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 crops, 2 weeds, on one line: no density", done.stdout)
+
     # The command line
 
     def test_bad_usage(self):

@@ -39,9 +39,7 @@ int show(const FieldOptions& options) {
   const field::FieldModel field = load(options);
   const field::FieldStatistics statistics = field::statistics_of(field);
   std::cout << field.name << ": " << field.source << '\n'
-            << fixed(field.length_m, 2) << " m x " << fixed(field.width_m, 2) << " m, "
-            << statistics.crops << " crops, " << statistics.weeds << " weeds, "
-            << fixed(statistics.weeds_per_m2, 2) << " weeds/m2\n";
+            << size_and_counts(field, statistics) << '\n';
   std::vector<std::vector<std::string>> rows = {{"species", "plants"}};
   for (const auto& species : statistics.by_species) {
     rows.push_back({species.species, std::to_string(species.plants)});

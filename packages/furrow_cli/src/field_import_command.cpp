@@ -4,7 +4,6 @@
 #include "commands.hpp"
 #include "field_file.hpp"
 #include "field_import.hpp"
-#include "furrow_core/text.hpp"
 #include "furrow_field/statistics.hpp"
 
 namespace furrow::cli {
@@ -32,9 +31,7 @@ int import(Options options) {
   const field::FieldModel& field = imported.field;
   file.write(field);
   const field::FieldStatistics statistics = field::statistics_of(field);
-  std::cout << file.path().string() << ": " << fixed(field.length_m, 2) << " m x "
-            << fixed(field.width_m, 2) << " m, " << statistics.crops << " crops, "
-            << statistics.weeds << " weeds, " << fixed(statistics.weeds_per_m2, 1) << " weeds/m2 ("
+  std::cout << file.path().string() << ": " << size_and_counts(field, statistics) << " ("
             << field.source << ")\n";
   return 0;
 }

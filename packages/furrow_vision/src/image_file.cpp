@@ -2,7 +2,10 @@
 
 #include <dlfcn.h>
 
+#include <array>
+#include <fstream>
 #include <string>
+#include <string_view>
 
 #include "image_codecs.hpp"
 
@@ -30,6 +33,26 @@ const Result<const ImageCodecs*>& codecs() {
   return loaded;
 }
 
+/// What a file is that no codec reads, and what to do about it.
+std::string why_unreadable(const fs::path& file) {
+  std::array<char, 12> head{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), head.size());
+  const std::string_view begin(head.data(), static_cast<std::size_t>(stream.gcount()));
+  if (begin.empty()) return "the file is empty, or may not be read";
+  const auto is = [&](std::string_view magic, std::size_t at = 0) {
+    return begin.size() >= at + magic.size() && begin.substr(at, magic.size()) == magic;
+  };
+  std::string_view format;
+  if (is("GIF8")) format = "a GIF image";
+  if (is("ftyp", 4)) format = "a HEIF or AVIF image, or a video";
+  if (is("RIFF") && is("AVI ", 8)) format = "a video";
+  if (is("%PDF")) format = "a PDF document";
+  if (is("<svg") || is("<?xml")) format = "an SVG or another XML file";
+  if (format.empty()) return "not an image, or a truncated one";
+  return std::string(format) + " is not read: save it as PNG or JPEG";
+}
+
 }  // namespace
 
 Result<cv::Mat> read_image(const fs::path& file, ImageChannels channels) {
@@ -49,7 +72,7 @@ Result<cv::Mat> read_image(const fs::path& file, ImageChannels channels) {
     image.release();
   }
   if (image.empty()) {
-    return Error{ErrorCode::kParse, file.string() + ": not an image, or a truncated one"};
+    return Error{ErrorCode::kParse, file.string() + ": " + why_unreadable(file)};
   }
   return image;
 }

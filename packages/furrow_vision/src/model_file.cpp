@@ -183,6 +183,12 @@ ModelFile parse(const std::string& content, const std::filesystem::path& folder)
 
 Result<ModelFile> read_model_file(const std::filesystem::path& path) {
   constexpr std::size_t kMaxBytes = 1 << 20;
+  if (path.extension() == ".onnx" || path.extension() == ".pt") {
+    auto model_file = path;
+    return Error{ErrorCode::kInvalidArgument,
+                 path.string() + ": a network; give the model file that describes it, such as " +
+                     model_file.replace_extension(".yaml").string()};
+  }
   const auto content = read_file(path, kMaxBytes);
   if (!content.ok()) return content.error();
   try {

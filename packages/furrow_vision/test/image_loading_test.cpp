@@ -57,6 +57,20 @@ TEST_F(ImageLoading, RefusesWhatIsNoImage) {
   expect_refused("absent.png");
 }
 
+TEST_F(ImageLoading, NamesTheFormatThatIsNotRead) {
+  using namespace std::string_literals;
+  for (const auto& [begin, named] :
+       std::vector<std::pair<std::string, std::string>>{{"GIF89a"s, "GIF"},
+                                                        {"\0\0\0\x18"s + "ftypheic"s, "HEIF"},
+                                                        {"%PDF-1.7 and more"s, "PDF"},
+                                                        {""s, "empty"}}) {
+    ASSERT_TRUE(write_file_atomically(folder_.path() / "photo.jpg", begin).ok());
+    const Status status = load("photo.jpg");
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().message.find(named), std::string::npos) << status.error().message;
+  }
+}
+
 TEST_F(ImageLoading, RefusesAHeaderThatPromisesTooMuch) {
   // A bitmap's header of 100000 x 100000 pixels, and nothing behind it.
   std::string header = "BM";
