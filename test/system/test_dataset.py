@@ -112,5 +112,55 @@ class RenderedSequencesTest(FurrowCase):
         self.assertGreater(entry["unknown_cells"], 0)
 
 
+class ConversionTest(FurrowCase):
+    """A COCO file whose categories do not say what is a crop."""
+
+    def setUp(self):
+        super().setUp()
+        done = self.furrow("dataset", "render", "rendered", "--seed", 2, "--set", "images=12",
+                           "width_px=160", "height_px=128", "resolution_mm_per_px=2.5",
+                           "validation_share=0.25", "evaluation_share=0.5", "crop_share=1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        file = self.folder / "rendered" / "train.json"
+        content = json.loads(file.read_text())
+        for category in content["categories"]:
+            del category["supercategory"]
+        file.write_text(json.dumps(content))
+
+    def kinds(self, part):
+        content = json.loads((self.out / f"{part}.json").read_text())
+        return {c["name"]: c["supercategory"] for c in content["categories"]}
+
+    def test_without_a_word_about_crops_it_is_refused_with_the_way_out(self):
+        self.assert_refused(["dataset", "convert", "rendered/train.json", self.out], "sugar_beet",
+                            "--crop NAME")
+
+    def test_named_crops_are_crops_and_the_others_weeds(self):
+        done = self.furrow("dataset", "convert", "rendered/train.json", self.out, "--crop",
+                           "sugar_beet", "--validation-share", 0.5, "--evaluation-share", 0)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        kinds = self.kinds("train")
+        self.assertEqual({name for name, kind in kinds.items() if kind == "crop"}, {"sugar_beet"})
+        self.assertGreater(len(kinds), 1)
+
+    def test_images_of_a_group_stay_in_one_set(self):
+        done = self.furrow("dataset", "convert", "rendered/evaluation.json", self.out, "--group-by",
+                           "png$", "--evaluation-share", 0.5)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("in 1 groups", done.stdout)
+        self.assertIn("6 images", done.stdout)
+        sizes = [len(json.loads((self.out / f"{part}.json").read_text())["images"])
+                 for part in ("train", "validation", "evaluation")]
+        self.assertEqual(sum(size > 0 for size in sizes), 1)
+
+    def test_a_gap_needs_times(self):
+        self.assert_refused(["dataset", "convert", "rendered/evaluation.json", self.out, "--gap", 5],
+                            "--gap: ", "not a Unix time")
+
+    def test_a_crop_that_is_not_there_is_refused_with_the_nearest_name(self):
+        self.assert_refused(["dataset", "convert", "rendered/train.json", self.out, "--crop",
+                             "suger_beet"], "suger_beet", "did you mean 'sugar_beet'?")
+
+
 if __name__ == "__main__":
     unittest.main()
