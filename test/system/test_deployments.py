@@ -3,13 +3,14 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import time
 import unittest
 
 from deployment_case import GRAPH, STOP_WITHIN_S, DeploymentCase
-from furrow_case import domain, furrow_program
+from furrow_case import FurrowCase, domain, furrow_program
 
 
 REPORT_FILES = ["as_applied.geojson", "ledger.csv", "map.svg", "report.html", "summary.json"]
@@ -45,6 +46,50 @@ class SameOutcomeTest(DeploymentCase):
         up.wait_for("tracker.*signal 9; the run cannot go on without it")
         self.assertEqual(up.finish(20), 1)
         self.assertFalse((self.out / "ledger.csv").exists())
+
+
+def why_no_small_memory():
+    """Why /dev/shm cannot be made small here; empty when it can."""
+    if os.geteuid() != 0 or shutil.which("unshare") is None:
+        return "needs root and util-linux"
+    made = subprocess.run(["unshare", "--mount", "mount", "-t", "tmpfs", "tmpfs", "/dev/shm"],
+                          capture_output=True, check=False)
+    return "" if made.returncode == 0 else "may not make mount namespaces"
+
+
+class SmallSharedMemoryTest(FurrowCase):
+    """A /dev/shm as small as that of a container, in a mount namespace of the program's own."""
+
+    def setUp(self):
+        super().setUp()
+        if reason := why_no_small_memory():
+            print(f"SKIPPED: {reason}")
+            self.skipTest(reason)
+
+    def within(self, size, *arguments):
+        small = 'mount -t tmpfs -o size="$0" tmpfs /dev/shm && exec "$@"'
+        return subprocess.run(
+            ["unshare", "--mount", "sh", "-c", small, size, str(furrow_program()),
+             *map(str, arguments), "--domain", str(domain()), "--out", str(self.out)],
+            cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
+            check=False)
+
+    def test_too_little_for_a_deployment_is_told_before_it_starts(self):
+        done = self.within("64m", "up", *GRAPH, "--length", 1)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, r"/dev/shm has 6\d\.\d MB free, and \d+ processes need \d+ MB")
+        self.assertIn("--shm-size=", done.stderr)
+        self.assertNotIn("signal 7", done.stdout + done.stderr)
+
+    def test_too_little_for_one_process_is_told_before_it_starts(self):
+        done = self.within("64k", "run", *GRAPH, "--length", 1)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("1 process needs", done.stderr)
+
+    def test_the_advice_works(self):
+        done = self.within("64k", "run", *GRAPH, "--length", 1, "--clock", "lockstep", "--dds",
+                           'transports=["udp"]')
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
 class CtrlCTest(DeploymentCase):

@@ -5,10 +5,10 @@
 #include <mutex>
 
 #include "cdr_type.hpp"
+#include "furrow_dds/shared_memory_need.hpp"
 #include "library_log.hpp"
 #include "network_interfaces.hpp"
 #include "participant_qos.hpp"
-#include "shared_memory.hpp"
 
 namespace furrow::dds {
 
@@ -19,7 +19,7 @@ namespace {
 ParticipantHandle create_participant(const DdsParameters& parameters, DiscoveryListener& listener) {
   const fdds::DomainParticipantQos qos = participant_qos(parameters);
   take_over_library_log();
-  remove_dead_shared_memory("/dev/shm", std::chrono::seconds(60));
+  check_shared_memory(parameters, 1);
   if (std::ranges::find(parameters.transports, "udp") != parameters.transports.end()) {
     wait_for_interfaces(parameters.interfaces, std::chrono::seconds(5));
   }

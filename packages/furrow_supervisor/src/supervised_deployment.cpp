@@ -9,6 +9,7 @@
 #include "furrow_configuration/deployment_file.hpp"
 #include "furrow_core/error.hpp"
 #include "furrow_dds/discovery_server.hpp"
+#include "furrow_dds/shared_memory_need.hpp"
 #include "furrow_graph/graph_check.hpp"
 #include "furrow_launch/installation.hpp"
 #include "furrow_launch/run_graph.hpp"
@@ -125,6 +126,7 @@ void SupervisedDeployment::open_logs(const std::filesystem::path& out, log::Log&
 }
 
 int SupervisedDeployment::run(const RunParameters& parameters) const {
+  dds::check_shared_memory(dds_, processes_.size());
   log::Log log({.repeat_period = Duration(), .now = log::unix_time});
   open_logs(parameters.out, log);
   const auto server = make_discovery_server(deployment_, host_, dds_);
