@@ -7,12 +7,15 @@ from furrow_case import FurrowCase, domain, furrow_program
 
 # A short row without images: 7 s of simulated time.
 SHORT_RUN = ["--graph", "weeding_true_detections", "--seed", "5", "--length", "1"]
+# As short, with few images: they cost most of the time.
+SHORT_RUN_WITH_IMAGES = ["--length", "1", "--seed", "3", "--set", "camera.camera_rate_hz=2"]
 
 
 class RecordingCase(FurrowCase):
     """Has a recording of a run in simulated time, made once."""
 
     recorded = None
+    short_run = SHORT_RUN
     record_options = []
 
     @classmethod
@@ -21,7 +24,7 @@ class RecordingCase(FurrowCase):
         case = FurrowCase()
         case.setUp()
         cls.addClassCleanup(case.doCleanups)
-        case.run_graph(*SHORT_RUN, "--record", case.folder / "run", *cls.record_options)
+        case.run_graph(*cls.short_run, "--record", case.folder / "run", *cls.record_options)
         cls.recorded = case.folder / "run_0.mcap"
         cls.first_out = case.out
 

@@ -5,8 +5,8 @@ import struct
 import unittest
 
 from furrow_case import FurrowCase
+from recording_case import SHORT_RUN_WITH_IMAGES, RecordingCase
 
-SHORT = ("--length", "1", "--seed", "3", "--set", "camera.camera_rate_hz=2")
 SENSORS = ("camera/image", "camera/depth", "camera/camera_info", "wheel/odometry", "imu/data",
            "gnss/fix", "robot_description", "tf_static")
 
@@ -73,18 +73,18 @@ class Decisions(FurrowCase):
         self.assertGreater(decided.count("treat"), 0.9 * len(treated), decided)
 
 
-class WithoutGroundTruth(FurrowCase):
-    def record(self, *topics):
-        self.run_graph(*SHORT, "--record", self.folder / "day", "--set", "recorder.compression=none",
-                       out=self.folder / "recorded")
+class WithoutGroundTruth(RecordingCase):
+    short_run = SHORT_RUN_WITH_IMAGES
+
+    def part(self, *topics):
         part = self.folder / "sensors.mcap"
-        done = self.furrow("bag", "cut", self.folder / "day_0.mcap", part, "--compression", "none",
-                           "--topics", *topics)
+        done = self.furrow("bag", "cut", self.recorded, part, "--compression", "none", "--topics",
+                           *topics)
         self.assertEqual(done.returncode, 0, done.stderr)
         return part
 
     def test_every_track_has_a_line_and_every_opening_of_a_valve_is_a_spray(self):
-        part = self.record(*SENSORS)
+        part = self.part(*SENSORS)
         done = self.furrow("run", "--no-dds", "--clock", "lockstep", "--out", self.out,
                            "--recording", part)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -105,12 +105,12 @@ class WithoutGroundTruth(FurrowCase):
         self.assertIn("computed from the robot&#39;s own tracks", (self.out / "report.html").read_text())
 
     def test_with_ground_truth_the_plants_are_the_true_ones(self):
-        part = self.record("*")
+        part = self.part("*")
         summary = self.run_graph("--recording", part)
         self.assertIs(summary["against_truth"], True)
 
     def test_wheels_in_a_map_frame_are_refused_at_the_start_with_the_way_out(self):
-        part = self.record(*SENSORS)
+        part = self.part(*SENSORS)
         self.assertGreater(move_wheels(part, 300_000.0, 5_600_000.0), 50)
         arguments = ("run", "--no-dds", "--clock", "lockstep", "--out", self.out, "--recording",
                      part)
@@ -134,7 +134,7 @@ class Origin(FurrowCase):
                 f"{component}.origin_latitude_deg", "common.origin_latitude_deg", "contradicts")
 
     def test_the_common_origin_is_that_of_the_applied_map(self):
-        self.run_graph(*SHORT, "--graph", "weeding_true_detections",
+        self.run_graph(*SHORT_RUN_WITH_IMAGES, "--graph", "weeding_true_detections",
                        "--set", "common.origin_latitude_deg=48.5",
                        "--set", "common.origin_longitude_deg=9.25")
         features = json.loads((self.out / "as_applied.geojson").read_text())["features"]

@@ -8,8 +8,8 @@ import time
 import unittest
 
 from furrow_case import FurrowCase, domain, furrow_program
+from recording_case import SHORT_RUN_WITH_IMAGES, RecordingCase
 
-SHORT = ("--length", "1", "--seed", "3", "--set", "camera.camera_rate_hz=2")
 SENSORS = ("camera/image", "camera/depth", "camera/camera_info", "wheel/odometry", "imu/data",
            "gnss/fix")
 GRAPHS = ("observe", "robot_dry_run", "robot")
@@ -58,13 +58,13 @@ class WithoutDrivers(FurrowCase):
         self.assertNotIn("emergency_stop", said)
 
 
-class WithARecording(FurrowCase):
+class WithARecording(RecordingCase):
+    short_run = SHORT_RUN_WITH_IMAGES
+
     def setUp(self):
         super().setUp()
-        self.run_graph(*SHORT, "--record", self.folder / "day", out=self.folder / "recorded")
         self.part = self.folder / "sensors.mcap"
-        done = self.furrow("bag", "cut", self.folder / "day_0.mcap", self.part, "--topics",
-                           *SENSORS)
+        done = self.furrow("bag", "cut", self.recorded, self.part, "--topics", *SENSORS)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_observing_decides_about_every_track_and_sprays_nothing(self):
