@@ -173,14 +173,12 @@ void add_convert_command(Command group) {
       .range(0.0, 0.9);
   command.option("--crop", options->crops,
                  "category that is a crop, where the file does not say so; the others are weeds");
-  command.option(
-      "--group-by", options->group_by,
-      "regular expression: images whose paths match alike, such as in a row's name, stay "
-      "in one set");
+  command.option("--group-by", options->group_by,
+                 "regular expression; images whose paths match alike stay in one set");
   command
       .option("--gap", options->gap_s,
-              "images less than this after one another, by stamps or names, stay in one set, s")
-      .range(0.001, 1e6);
+              "images less than this after the one before stay in one set, s; 0: no groups by time")
+      .range(0.0, 1e6);
   command.option("--seed", options->seed, "seed of the split").at_least(0);
   add_force_option(command, options->force);
   command.on_run([options] { return convert(*options); });

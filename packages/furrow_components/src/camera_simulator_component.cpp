@@ -220,8 +220,7 @@ class CameraSimulator final : public graph::Component {
     furrow_msgs::msg::PlantInstance instance;
     instance.score(1.0F);
     instance.crop_probability(plant.kind == field::PlantKind::kCrop ? 1.0F : 0.0F);
-    // The photographs of some data sets name no species.
-    if (!plant.species.empty() && plant.species != "crop" && plant.species != "weed") {
+    if (!plant.species.empty()) {
       auto& species = instance.species().emplace_back();
       species.species(plant.species);
       species.crop(plant.kind == field::PlantKind::kCrop);

@@ -199,19 +199,18 @@ class Perception final : public graph::Component {
     return message;
   }
 
-  /// Of classes that are species, such as "thistle"; "crop" and "weed" name none.
+  /// Of classes that are species, such as "thistle".
   [[nodiscard]] std::vector<furrow_msgs::msg::SpeciesProbability> species_of(
       const vision::Instance& instance) const {
     constexpr double kLeast = 0.001;
     std::vector<furrow_msgs::msg::SpeciesProbability> result;
     const auto& classes = detector_->classes();
     for (std::size_t i = 0; i < std::min(classes.size(), instance.class_scores.size()); ++i) {
-      const bool crop = classes[i].kind == vision::SubClassKind::kCrop;
-      if (classes[i].name == (crop ? "crop" : "weed") || instance.class_scores[i] < kLeast)
-        continue;
+      const std::string name = annotation::species_of(classes[i]);
+      if (name.empty() || instance.class_scores[i] < kLeast) continue;
       auto& species = result.emplace_back();
-      species.species(classes[i].name);
-      species.crop(crop);
+      species.species(name);
+      species.crop(classes[i].kind == vision::SubClassKind::kCrop);
       species.probability(static_cast<float>(std::min(instance.class_scores[i], 1.0)));
     }
     return result;

@@ -18,7 +18,7 @@ simulation::GroundPhoto to_photo(const vision::AnnotatedImage& image) {
     photo.plants.push_back({.kind = instance.kind == vision::SubClassKind::kCrop
                                         ? field::PlantKind::kCrop
                                         : field::PlantKind::kWeed,
-                            .species = instance.category,
+                            .species = annotation::species_of({instance.category, instance.kind}),
                             .stem_px = instance.stem_px});
   }
   return photo;

@@ -15,8 +15,8 @@ void PlannerComponentParameters::visit(ParameterVisitor& v) {
            .max = 1.0},
           crop_threshold);
   v.visit({.name = "unsure_threshold",
-           .description = "tracks with at least this crop probability that are no crop are unsure: "
-                          "protected like a crop, and not treated",
+           .description = "tracks from this crop probability up to crop_threshold are unsure: not "
+                          "treated, and protected like crops",
            .min = 0.0,
            .max = 1.0},
           unsure_threshold);

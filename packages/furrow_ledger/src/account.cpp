@@ -270,9 +270,10 @@ class Accountant {
     const std::size_t track = association_.track_of_plant[plant];
     if (track == kNoIndex) return;
     if (led != nullptr) row.appraisal = led->appraisal;
-    for (const Decision& decision : decisions_of(tracks_[track].id)) {
-      if (led != nullptr && led->appraisal) break;
-      if (decision.appraisal) row.appraisal = decision.appraisal;
+    if (!row.appraisal) {
+      for (const Decision& decision : decisions_of(tracks_[track].id)) {
+        if (decision.appraisal) row.appraisal = decision.appraisal;
+      }
     }
     const TrackView& view = tracks_[track];
     row.seen_species = row.appraisal ? row.appraisal->species : view.species;

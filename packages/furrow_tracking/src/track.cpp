@@ -1,7 +1,5 @@
 #include "furrow_tracking/track.hpp"
 
-#include <algorithm>
-
 namespace furrow::tracking {
 
 std::string_view to_string(PlantClass plant_class) {
@@ -38,12 +36,6 @@ std::string_view to_string(EndReason reason) {
       return "finished";
   }
   return "unknown";
-}
-
-int Track::species() const {
-  const auto best = std::max_element(species_probability.begin(), species_probability.end());
-  if (best == species_probability.end() || !(*best > 0.0F)) return -1;
-  return static_cast<int>(best - species_probability.begin());
 }
 
 }  // namespace furrow::tracking

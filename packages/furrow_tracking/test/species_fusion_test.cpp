@@ -70,7 +70,7 @@ TEST(SpeciesFusion, AViewWithoutSpeciesChangesNothing) {
   const Track and_without = seen_as({{0.7F, 0.3F}, {}, {0.0F, 0.0F}});
   EXPECT_EQ(with.species_probability, and_without.species_probability);
   EXPECT_TRUE(seen_as({{}}).species_probability.empty());
-  EXPECT_EQ(seen_as({{}}).species(), -1);
+  EXPECT_EQ(most_probable_species(seen_as({{}})), -1);
 }
 
 TEST(SpeciesFusion, TheRestIsUnknownAndProbabilitiesStayFinite) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "furrow_tracking/tracker.hpp"
@@ -26,5 +27,13 @@ inline View view_at(double t_s) {
 }
 
 using Observations = std::vector<Observation>;
+
+/// Index into the species table of the most probable one; -1: no view named a species.
+inline int most_probable_species(const Track& track) {
+  const auto& probability = track.species_probability;
+  const auto best = std::ranges::max_element(probability);
+  if (best == probability.end() || !(*best > 0.0F)) return -1;
+  return static_cast<int>(best - probability.begin());
+}
 
 }  // namespace furrow::tracking

@@ -145,13 +145,13 @@ TEST(Tracker, FusesTheSpeciesOfItsViews) {
   double t_s = 0.0;
   Observation observation = seen_at(0.0, 0.0);
   tracker.update(view_at(t_s += 0.2), Observations{observation});
-  EXPECT_EQ(tracker.tracks()[0].species(), -1);
+  EXPECT_EQ(most_probable_species(tracker.tracks()[0]), -1);
   const std::vector<std::vector<float>> views = {{0.1F, 0.9F}, {0.6F, 0.3F, 0.1F}, {0.2F, 0.7F}};
   for (const std::vector<float>& probabilities : views) {
     observation.species_probability = probabilities;
     tracker.update(view_at(t_s += 0.2), Observations{observation});
   }
-  EXPECT_EQ(tracker.tracks()[0].species(), 1);
+  EXPECT_EQ(most_probable_species(tracker.tracks()[0]), 1);
   EXPECT_DOUBLE_EQ(tracker.tracks()[0].species_views, 3.0);
 }
 

@@ -26,6 +26,11 @@ struct SubClass {
   SubClassKind kind = SubClassKind::kWeed;
 };
 
+/// The name of a species; empty for "crop" and "weed", which name none.
+[[nodiscard]] inline std::string species_of(const SubClass& sub_class) {
+  return sub_class.name == "crop" || sub_class.name == "weed" ? "" : sub_class.name;
+}
+
 struct AnnotatedInstance {
   SubClassKind kind = SubClassKind::kWeed;
   std::string category;  ///< species, or "crop" / "weed" when unknown

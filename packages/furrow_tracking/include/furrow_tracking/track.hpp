@@ -66,8 +66,6 @@ struct Track {
   [[nodiscard]] PlantClass plant_class() const {
     return class_probability[0] > class_probability[1] ? PlantClass::kCrop : PlantClass::kWeed;
   }
-  /// The most probable one: an index into the caller's species table, or -1.
-  [[nodiscard]] int species() const;
 };
 
 }  // namespace furrow::tracking
